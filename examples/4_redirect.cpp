@@ -62,10 +62,12 @@ std::vector<Waypoint> waypoints_at(std::span<const double> x, Time begin) {
   return path;
 }
 
-void show(const char* what, AppendStatus status, Reader& reader) {
+/// Prints the outcome of the last item, and where the machine is.
+void show(const char* what, Producer& producer, Reader& reader) {
+  const ItemOutcome outcome = producer.wait_outcome(producer.last_item(), 1s);
   State state(1);
   if (!has_values(reader.sample(MonotonicClock().now(), state))) return;
-  std::printf("%s %s at x = %.3f m, v = %.3f m/s\n", what, std::string(to_string(status)).c_str(),
+  std::printf("%s %s; now at x = %.3f m, v = %.3f m/s\n", what, to_string(outcome).c_str(),
               state.position()[0], state.velocity()[0]);
 }
 
@@ -87,10 +89,12 @@ void run(const char* stream) {
   print_preview(producer, path, 500ms);
   AppendStatus status = redirect(producer, path);
   while (status == AppendStatus::too_late) status = redirect(producer, path);
-  show("redirect", status, reader);
+  if (status != AppendStatus::accepted) throw StreamError("redirect refused");
+  show("redirect", producer, reader);
 
   std::this_thread::sleep_for(800ms);
-  show("stop", stop(producer), reader);
+  if (stop(producer) != AppendStatus::accepted) throw StreamError("stop refused");
+  show("stop", producer, reader);
 
   State state(1);
   const MonotonicClock clock;

@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import sys
 import time
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -66,30 +67,33 @@ def arrivals(policy, begin, seconds):
 
 
 def switch_to(arm, chunk):
-    """Lets the curve leave for a chunk that has just arrived. Returns False if the chunk is too old."""
+    """Lets the curve leave for a chunk that has just arrived. Returns its item; None if it is too old."""
     if chunk.times[-1] * 1e9 <= arm.earliest:
-        return False
+        return None
     # As soon as possible. The actions whose time has passed until then are passed over.
-    arm.replace_from(times=chunk.times, positions=chunk.actions, blend=BLEND)
-    return True
+    return arm.replace_from(times=chunk.times, positions=chunk.actions, blend=BLEND)
 
 
 def follow(arm, chunks):
-    """Switches to each chunk as it arrives. Returns how many were used, too old, and refused."""
-    newest, counts = -np.inf, {"used": 0, "too old": 0, "refused": 0}
+    """Switches to each chunk as it arrives. Returns what became of them: in force, too old, refused, ..."""
+    newest, counts = -np.inf, Counter()
     for chunk in chunks:
         time.sleep(max(0.0, chunk.arrival - time.monotonic()))
         if chunk.observed < newest:  # overtaken by a chunk of a later observation
             counts["too old"] += 1
             continue
         try:
-            is_used = switch_to(arm, chunk)
+            item = switch_to(arm, chunk)
         except splinecast.Refused as refused:  # too late: this process was held up; the next chunk comes soon
             print(refused)
-            counts["refused"] += 1
+            counts["refused at once"] += 1
             continue
-        counts["used" if is_used else "too old"] += 1
-        newest = chunk.observed if is_used else newest
+        if item is None:
+            counts["too old"] += 1
+            continue
+        outcome = arm.wait_outcome(item, timeout=1)  # the solver takes it within milliseconds
+        counts[str(outcome.kind)] += 1
+        newest = chunk.observed
     return counts
 
 
@@ -117,8 +121,8 @@ def run(options):
     if controller.wait(60) != 0:
         sys.exit("the controller has failed")
     save(chunks, options.out / "chunks.npz")
-    print(f"{len(chunks)} chunks: {counts['used']} used, {counts['too old']} too old, {counts['refused']} refused; "
-          f"the solver refused {len(refused)} items")
+    said = ", ".join(f"{count} {what}" for what, count in counts.most_common())
+    print(f"{len(chunks)} chunks: {said}; the solver refused {len(refused)} items")
 
 
 def main():

@@ -8,6 +8,7 @@
 #include "core/forms/knot_segment.hpp"
 #include "core/solvers/knot_ring.hpp"
 #include "ipc/board/knot.hpp"
+#include "ipc/board/outcome_record.hpp"
 #include "ipc/board/refused_item.hpp"
 #include "ipc/layout/board_control.hpp"
 #include "ipc/layout/commander_control.hpp"
@@ -86,9 +87,6 @@ class KnotBoardReader {
   /// not, or if the writer overtook this call. O(1).
   [[nodiscard]] Time refused_until(Word r) const noexcept;
 
-  /// Summary::longest_pause under revision r; 0 if the writer overtook this call. O(1).
-  [[nodiscard]] Time longest_pause(Word r) const noexcept;
-
   /// Copies the whole summary. On failure `out` does not change.
   [[nodiscard]] bool copy_summary(const Look& look, Summary& out) const noexcept;
 
@@ -159,6 +157,15 @@ class KnotBoardReader {
   [[nodiscard]] std::optional<LimitExcess> excess_of(const Summary& summary,
                                                      Word item) const noexcept;
 
+  /// Record `index` < summary.outcomes of the stream's outcomes; empty if it has been, or is being,
+  /// overwritten.
+  [[nodiscard]] std::optional<OutcomeRecord> outcome(Word index) const noexcept;
+
+  /// Items below this may have had an outcome whose record is lost. Load it after the records.
+  [[nodiscard]] Word outcomes_lost() const noexcept {
+    return load(control_[kOutcomesLost], std::memory_order_acquire);
+  }
+
   /// Copies the right side of the row of a copied knot into `g`, and returns the row's scalars.
   /// Only the writer calls it, so that no other process writes concurrently.
   [[nodiscard]] core::Prefix copy_row(const KnotCopy& knot, std::span<double> g) const noexcept;
@@ -181,7 +188,6 @@ class KnotBoardReader {
   [[nodiscard]] SlotView<const Word> cells(Word number) const noexcept {
     return {slot(number), cell_words_};
   }
-  [[nodiscard]] Time summary_time(Word r, std::size_t word, Time otherwise) const noexcept;
   [[nodiscard]] SlotView<const Word> summary_cells() const noexcept {
     return {control_.data() + kSummarySlot, kSummaryWords};
   }
@@ -194,6 +200,7 @@ class KnotBoardReader {
   std::span<const Word> refusals_;
   std::span<const Word> excesses_;
   std::span<const Word> worst_;
+  std::span<const Word> outcomes_;
   std::span<const Word> times_;
   std::span<const Word> tables_;  ///< of a law: both tables of commanders
   std::span<const Word> slots_;

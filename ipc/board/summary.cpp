@@ -67,23 +67,15 @@ bool KnotBoardReader::copy_bounds(const Look& look, Word seen, Summary& out) con
   return true;
 }
 
-/// A time of the summary under revision r, or `otherwise` if the writer overtook this call.
-Time KnotBoardReader::summary_time(Word r, std::size_t word, Time otherwise) const noexcept {
+Time KnotBoardReader::refused_until(Word r) const noexcept {
+  constexpr std::size_t kWord = word_of(kSummaryFields, "refused until");
   const auto view = summary_cells();
   const Tags tags = view.tags(std::memory_order_acquire);
-  if (!tags.holds_any(r)) return otherwise;
+  if (!tags.holds_any(r)) return Time::max();
   const std::size_t c = tags.newest(r);
-  const Time time = to_time(load(view.cell(c)[word], std::memory_order_acquire));
+  const Time time = to_time(load(view.cell(c)[kWord], std::memory_order_acquire));
   const bool is_whole = load(view.cell(c)[0], std::memory_order_relaxed) == tags.of[c];
-  return is_whole ? time : otherwise;
-}
-
-Time KnotBoardReader::refused_until(Word r) const noexcept {
-  return summary_time(r, word_of(kSummaryFields, "refused until"), Time::max());
-}
-
-Time KnotBoardReader::longest_pause(Word r) const noexcept {
-  return summary_time(r, word_of(kSummaryFields, "longest pause"), Time::zero());
+  return is_whole ? time : Time::max();
 }
 
 bool KnotBoardReader::copy_summary(const Look& look, Summary& out) const noexcept {

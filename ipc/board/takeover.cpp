@@ -9,6 +9,7 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
       refusals_(words_at(region, layout.refusals, kRefusalsKept)),
       excesses_(words_at(region, layout.excesses, kExcessesKept * kExcessWords)),
       worst_(words_at(region, layout.worst, kExcessWords)),
+      outcomes_(words_at(region, layout.outcomes, kOutcomesKept * kOutcomeWords)),
       times_(words_at(region, layout.times, layout.capacity)),
       tables_(layout.commanders > 0 ? words_at(region, layout.commanders, 2 * kCommanderTableWords)
                                     : std::span<Word>{}),

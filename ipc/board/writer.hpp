@@ -11,6 +11,7 @@
 #include "core/limits/check.hpp"
 #include "core/solvers/knot_ring.hpp"
 #include "ipc/board/knot.hpp"
+#include "ipc/board/outcome_record.hpp"
 #include "ipc/board/refused_item.hpp"
 #include "ipc/layout/board_control.hpp"
 #include "ipc/layout/commander_control.hpp"
@@ -52,6 +53,12 @@
 ///   0, then the other words, then the first word's value, each with release. A reader loads the
 ///   first word, the others (acquire), and the first word again (relaxed). If it is the same and
 ///   not 0, the reader has copied one whole record, because no item has two records.
+/// - Outcomes: as excesses, two words each, with the low byte of the index / kOutcomesKept in the
+///   first word: a record of another index is not taken for it, unless 65,536 were written during
+///   the reader's call. Before a record overwrites one, `outcomes lost` is raised above its item,
+///   with release. A reader loads that word after the records, with acquire: if it did not find a
+///   record because a newer one has overwritten it, it finds the word raised. A discarded revision
+///   leaves the word too high, never too low.
 /// - `retired`: stored with release and loaded with acquire; nothing but the word depends on it.
 /// - The writer's loads of its own board are relaxed: the stores are its own, or those of its
 ///   predecessor, whose lock the kernel released when it died.
@@ -119,6 +126,12 @@ class KnotBoardWriter {
 
   /// Writes the largest excess of a waypoint that was not refused, for all revisions from now on.
   void write_worst_excess(const LimitExcess& excess) noexcept;
+
+  /// Writes record `index`, counted from 0, of the stream's outcomes for the next revision.
+  void write_outcome(Word index, const OutcomeRecord& record) noexcept;
+
+  /// Records that the outcomes of items before `end` may be lost: of a solver that has died.
+  void lose_outcomes(Word end) noexcept;
 
   /// Sets the table of a law's commanders for the next revision: kCommanderTableWords words, or
   /// none to leave it as it is. Only for the board of a law.
@@ -271,6 +284,7 @@ class KnotBoardWriter {
   std::span<Word> refusals_;
   std::span<Word> excesses_;
   std::span<Word> worst_;
+  std::span<Word> outcomes_;
   std::span<Word> times_;
   std::span<Word> tables_;   ///< of a law: both tables of commanders
   std::vector<Word> table_;  ///< of a law: the committed table, and until a commit the next one

@@ -1,6 +1,7 @@
 #include <string>
 
 #include "ipc/arguments/options.hpp"
+#include "ipc/arguments/structs.hpp"
 #include "ipc/c/roles.hpp"
 
 using namespace splinecast;
@@ -28,6 +29,18 @@ Instant instant_of(const Waypoint& state) noexcept {
           .position = state.position,
           .velocity = state.velocity,
           .acceleration = state.acceleration};
+}
+
+/// Writes an outcome. Returns its kind.
+int put(const ItemOutcome& found, splinecast_outcome* out) {
+  splinecast_outcome filled = read_struct(out, SPLINECAST_OUTCOME_INIT, "out");
+  filled.kind = static_cast<int>(found.kind);
+  filled.way = static_cast<int>(found.way);
+  filled.reason = static_cast<int>(found.reason);
+  filled.is_final = found.is_final ? 1 : 0;
+  filled.time = found.time.value_or(Time::zero()).count();
+  write_struct(filled, out);
+  return filled.kind;
 }
 
 }  // namespace
@@ -133,6 +146,26 @@ int splinecast_producer_finish(splinecast_producer* producer, const splinecast_c
 int splinecast_producer_refusals(splinecast_producer* producer, splinecast_refusals* out) {
   return with(producer, [&](splinecast_producer& own) {
     return own.refused.deliver(out, [&](Refusals& found) { own.producer.refusals(found); });
+  });
+}
+
+int splinecast_producer_last_item(splinecast_producer* producer, uint64_t* item) {
+  return with(producer, [&](splinecast_producer& own) {
+    *require_pointer(item, "item") = own.producer.last_item();
+    return 0;
+  });
+}
+
+int splinecast_producer_outcome(splinecast_producer* producer, uint64_t item,
+                                splinecast_outcome* out) {
+  return with(producer,
+              [&](splinecast_producer& own) { return put(own.producer.outcome(item), out); });
+}
+
+int splinecast_producer_wait_outcome(splinecast_producer* producer, uint64_t item, int64_t timeout,
+                                     splinecast_outcome* out) {
+  return with(producer, [&](splinecast_producer& own) {
+    return put(own.producer.wait_outcome(item, timeout_of(timeout)), out);
   });
 }
 

@@ -193,6 +193,25 @@ typedef enum splinecast_refusal_reason {
   SPLINECAST_REFUSAL_CANNOT_FOLLOW = 15   ///< none met for 3 s, and no entry leads to it
 } splinecast_refusal_reason;
 
+/// What became of an item that the ring has accepted.
+typedef enum splinecast_outcome_kind {
+  SPLINECAST_OUTCOME_WAITING,      ///< no solver has taken it yet
+  SPLINECAST_OUTCOME_UNDECIDED,    ///< taken, but a transition may still pass over it
+  SPLINECAST_OUTCOME_IN_FORCE,     ///< at `time`
+  SPLINECAST_OUTCOME_PASSED_OVER,  ///< the curve goes from before the waypoint to a later one
+  SPLINECAST_OUTCOME_WITHDRAWN,    ///< a replacement or a stop took its place
+  SPLINECAST_OUTCOME_REFUSED,      ///< by the solver, for `reason`
+  SPLINECAST_OUTCOME_FORGOTTEN     ///< not known any more
+} splinecast_outcome_kind;
+
+/// By which part of the curve an item is in force.
+typedef enum splinecast_outcome_way {
+  SPLINECAST_WAY_SPLINE,  ///< the spline through the waypoints
+  SPLINECAST_WAY_ENTRY,   ///< a transition ends at the waypoint, or begins with the item
+  SPLINECAST_WAY_STOP,    ///< a stop, which begins at `time`
+  SPLINECAST_WAY_END      ///< the curve slows down or ends there, or rests from then on
+} splinecast_outcome_way;
+
 /// The validity of a sample. Up to `revised` it has values; the others leave the state unchanged.
 typedef enum splinecast_sample_status {
   SPLINECAST_SAMPLE_SETTLED,         ///< final: the same bits for every reader, now and later
@@ -219,6 +238,8 @@ typedef enum splinecast_wait_status {
 SPLINECAST_API const char* splinecast_append_text(int append_status);
 SPLINECAST_API const char* splinecast_refusal_text(int refusal_reason);
 SPLINECAST_API const char* splinecast_sample_text(int sample_status);
+SPLINECAST_API const char* splinecast_outcome_text(int outcome_kind);
+SPLINECAST_API const char* splinecast_way_text(int outcome_way);
 SPLINECAST_API const char* splinecast_wait_text(int wait_status);
 
 /// Whether a sample of this status has values: 0 or 1; 0 for other numbers.
@@ -358,7 +379,7 @@ typedef struct splinecast_limit_excess {
 
 /// An item that the ring accepted and the solver refused.
 typedef struct splinecast_refusal {
-  uint64_t item;                   ///< number of the item: appended() − 1 after its append
+  uint64_t item;                   ///< its number: splinecast_producer_last_item after its append
   int64_t time;                    ///< if `has_time`: else the ring has overwritten it
   int reason;                      ///< splinecast_refusal_reason
   int has_time;                    ///< 0 or 1
@@ -366,6 +387,19 @@ typedef struct splinecast_refusal {
   int reserved;                    ///< 0
   splinecast_limit_excess excess;  ///< if `has_excess`
 } splinecast_refusal;
+
+/// The outcome of an item.
+typedef struct splinecast_outcome {
+  size_t size;
+  int kind;      ///< splinecast_outcome_kind
+  int way;       ///< splinecast_outcome_way, if in force; else 0
+  int reason;    ///< splinecast_refusal_reason, if refused; else 0
+  int is_final;  ///< 1: nothing can change it any more
+  int64_t time;  ///< if in force: of a late replacement, and of the waypoints of an end that slows
+                 ///< down, later than the item's own time; else 0
+} splinecast_outcome;
+#define SPLINECAST_OUTCOME_INIT \
+  { sizeof(splinecast_outcome), 0, 0, 0, 0, 0 }
 
 /// Room for refusals, and what a call has written to it.
 typedef struct splinecast_refusals {
@@ -531,6 +565,23 @@ SPLINECAST_API int splinecast_producer_finish(splinecast_producer* producer,
 /// only what has been written. Does not allocate after a call in which nothing was refused.
 SPLINECAST_API int splinecast_producer_refusals(splinecast_producer* producer,
                                                 splinecast_refusals* out);
+
+/// Writes the number of the item of the last call that was accepted: of a waypoint, a start state
+/// or the finish; of a replacement or a stop that of the replacement, whose waypoint i has this
+/// number + 1 + i.
+SPLINECAST_API int splinecast_producer_last_item(splinecast_producer* producer, uint64_t* item);
+
+/// Writes what became of an item, by the newest revision, and returns its kind. The board keeps the
+/// last 256 outcomes that are not those of a waypoint on the spline at its own time, and the last
+/// 1,024 refusals. `forgotten`: there may have been an older one, or the ring no longer has the
+/// item, or another solver took it, and there is no record. Allocates nothing.
+SPLINECAST_API int splinecast_producer_outcome(splinecast_producer* producer, uint64_t item,
+                                               splinecast_outcome* out);
+
+/// The same, once the outcome is known, neither `waiting` nor `undecided`, or after the time-out.
+/// Blocks.
+SPLINECAST_API int splinecast_producer_wait_outcome(splinecast_producer* producer, uint64_t item,
+                                                    int64_t timeout, splinecast_outcome* out);
 
 /// Wait until a solver has attached, until the ring has room for a waypoint, or until the solver
 /// has consumed everything. Return 1, or 0 after the time-out. Block.

@@ -6,6 +6,7 @@
 #include "ipc/arguments/guard.hpp"
 #include "ipc/arguments/refusals.hpp"
 #include "splinecast/clock.hpp"
+#include "splinecast/status.hpp"
 
 /// Texts of errors, statuses and refusals. Those of the library's statuses are literals, so that a
 /// zero byte follows each.
@@ -57,6 +58,14 @@ const char* splinecast_refusal_text(int refusal_reason) {
 
 const char* splinecast_sample_text(int sample_status) {
   return text_of<SampleStatus>(sample_status, kSampleStatuses);
+}
+
+const char* splinecast_outcome_text(int outcome_kind) {
+  return text_of<OutcomeKind>(outcome_kind, kOutcomeKinds);
+}
+
+const char* splinecast_way_text(int outcome_way) {
+  return text_of<OutcomeWay>(outcome_way, kOutcomeWays);
 }
 
 const char* splinecast_wait_text(int wait_status) {

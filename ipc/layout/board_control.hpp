@@ -34,7 +34,11 @@ inline constexpr std::tuple kBoardControlRows{
              {.words = 1},
              FieldWriter::owner,
              "of a live stream: the last revision whose commit was compared with the clock"},
-    padding(kLineWords - 3),
+    FieldRow{"outcomes lost",
+             {.words = 1},
+             FieldWriter::owner,
+             "items below this number may have had an outcome of which the record is lost"},
+    padding(kLineWords - 4),
     FieldRow{"sleeping", {.words = 1}, FieldWriter::owner, "1: the solver sleeps on `written`"},
     padding(kLineWords - 1),
     FieldRow{"summary, cell 0", {.words = kSummaryWords}, FieldWriter::owner, "see the next part"},
@@ -54,6 +58,7 @@ inline constexpr std::size_t kSettledUntil = word_of(kBoardControlFields, "settl
 inline constexpr std::size_t kConsumed = word_of(kBoardControlFields, "consumed");
 inline constexpr std::size_t kLate = word_of(kBoardControlFields, "late");
 inline constexpr std::size_t kChecked = word_of(kBoardControlFields, "checked");
+inline constexpr std::size_t kOutcomesLost = word_of(kBoardControlFields, "outcomes lost");
 inline constexpr std::size_t kSleeping = word_of(kBoardControlFields, "sleeping");
 inline constexpr std::size_t kSummarySlot = word_of(kBoardControlFields, "summary, cell 0");
 inline constexpr std::size_t kChanges = word_of(kBoardControlFields, "changed from");

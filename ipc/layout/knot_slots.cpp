@@ -24,6 +24,7 @@ BoardLayout BoardLayout::of(std::size_t dimensions, std::size_t capacity, std::s
       .refusals = kBodyOffset,
       .excesses = kBodyOffset + word_of(kBodyFields, "excesses") * sizeof(Word),
       .worst = kBodyOffset + word_of(kBodyFields, "worst excess") * sizeof(Word),
+      .outcomes = kBodyOffset + word_of(kBodyFields, "outcomes") * sizeof(Word),
       .times = kBodyOffset + word_of(kBodyFields, "times") * sizeof(Word),
       .slots = 0,
       .cell = lines(kCellFields),

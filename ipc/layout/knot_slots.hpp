@@ -103,10 +103,15 @@ inline constexpr std::tuple kBodyRows{
              FieldWriter::owner,
              "the largest one, relative to its limit, of all that were not refused: as above;\n"
              "word 0 is 0 before the first excess; the last 4 words are 0"},
-    FieldRow{"outcomes",
-             {.words = kOutcomesKept * kOutcomeWords},
-             FieldWriter::owner,
-             "reserved for what became of the last 256 replacements, 2 words each: 0"},
+    FieldRow{
+        "outcomes",
+        {.words = kOutcomesKept * kOutcomeWords},
+        FieldWriter::owner,
+        "the last 256 outcomes other than on the spline at the own time, 2 words each;\n"
+        "number i is record i mod 256:\n"
+        "word 0: 0 while it is written, else item number · 65,536 + i div 256 mod 256 · 256\n"
+        "+ kind (1 to 4 in force by spline, entry, stop, end; 5 passed over; 6 withdrawn)\n"
+        "word 1: in force: time, ns; else the first item: all from there to the item of word 0"},
     FieldRow{"stoppers",
              {.words = 2 * kMostStoppers * kStopperWords},
              FieldWriter::owner,
@@ -134,6 +139,7 @@ struct BoardLayout {
   std::size_t refusals;  ///< kRefusalsKept words
   std::size_t excesses;  ///< kExcessesKept records of kExcessWords words
   std::size_t worst;     ///< one record
+  std::size_t outcomes;  ///< kOutcomesKept records of kOutcomeWords words
   std::size_t times;     ///< packed times: capacity words
   std::size_t slots;     ///< capacity + kPassedSlots slots
   std::size_t cell;      ///< bytes of a cell; the cells are at offset 0 of a slot

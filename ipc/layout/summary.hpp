@@ -56,6 +56,9 @@ enum class Following : std::uint8_t {
 inline constexpr Time kUnmetTold{1'000'000'000};
 inline constexpr Time kUnmetRefused{3'000'000'000};
 
+/// No item has this number.
+inline constexpr Word kNoItem = ~Word{0};
+
 /// The summary: the values of a whole revision.
 struct Summary {
   Word revision = 0;  ///< the revision of this summary; 0: none yet
@@ -104,6 +107,9 @@ struct Summary {
   /// With Beyond::enter: the curve cannot follow its waypoints. It ends as it is planned, and
   /// waypoints up to this time are refused; max(): it follows them.
   Time refused_until = Time::max();
+  Word outcomes = 0;         ///< records of outcomes that were written
+  Word undecided = kNoItem;  ///< first item of a waypoint that the curve neither meets nor has
+                             ///< passed over; kNoItem if there is none
   /// The curve before this time never changes. May be raised without a revision.
   Time settled_until = -kLatestTime;
   Time changed_from{};  ///< earliest time whose curve this revision changed
@@ -213,7 +219,13 @@ inline constexpr std::tuple kFurtherRows{
     MemberRow<&Summary::refused_until>{
         "refused until", FieldWriter::owner,
         "ns: waypoints up to this time are refused as `cannot follow`; 2⁶³ − 1: none"},
-    padding(4)};
+    MemberRow<&Summary::outcomes>{"outcomes", FieldWriter::owner,
+                                  "records of outcomes that were written"},
+    MemberRow<&Summary::undecided>{
+        "undecided", FieldWriter::owner,
+        "first item of a waypoint that the curve neither meets nor has passed over;\n"
+        "2⁶⁴ − 1: none"},
+    padding(2)};
 
 /// The words of a cell of the summary's slot. To add a field, add a member of Summary and a row
 /// above; the rest follows from the row.

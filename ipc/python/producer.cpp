@@ -68,7 +68,6 @@ class HeldProducer {
     const ReplaceOptions options = blend_of(blend);
     Asked asked{{.what = "replacement", .status = {}}, {}, {}};
     if (!t.is_none()) asked.item.time = asked.latest = time;
-    asked.items += path.waypoints.size();
     if (!path.waypoints.empty()) {
       asked.first = path.waypoints.front();
       asked.latest = path.waypoints.back().time;
@@ -137,6 +136,19 @@ class HeldProducer {
     return to_record(found, names_);
   }
 
+  py::object outcome(std::uint64_t item) {
+    return to_record(producer_.use([&](Producer& producer) { return producer.outcome(item); }));
+  }
+
+  py::object wait_outcome(std::uint64_t item, py::handle timeout) {
+    ItemOutcome found;
+    (void)wait_until(producer_, end_of(optional_duration(timeout, "timeout")),
+                     [&](Producer& producer, Time time) {
+                       return is_known(found = producer.wait_outcome(item, time));
+                     });
+    return to_record(found);
+  }
+
   /// One of the waits of Producer.
   template <bool (Producer::*Wait)(Time)>
   bool wait(py::handle timeout) {
@@ -191,7 +203,6 @@ class HeldProducer {
     RefusedItem item;
     std::optional<Time> latest;  ///< its time, or that of its last waypoint
     Waypoint first;              ///< the waypoint that may start the stream, if its position is set
-    std::uint64_t items = 1;
   };
   [[nodiscard]] static Asked asked(const char* what, const Waypoint& waypoint) {
     return {{.what = what, .status = {}, .time = waypoint.time, .position = waypoint.position},
@@ -205,9 +216,8 @@ class HeldProducer {
     std::uint64_t number = 0;
     RefusedItem item = asked.item;
     const auto try_once = [&](Producer& producer) {
-      number = producer.appended();
       const AppendStatus status = append(producer);
-      if (producer.appended() > number) number = producer.appended() - asked.items;
+      if (status == AppendStatus::accepted) number = producer.last_item();
       return status;
     };
     item.status = producer_.use(try_once);
@@ -264,7 +274,7 @@ std::uint64_t HeldProducer::append_many(py::handle times, py::handle positions,
     for (std::size_t n = 0; n < kBatch && i < waypoints.size(); ++n, ++i) {
       status = producer.append(waypoints[i]);
       if (status != AppendStatus::accepted) return;
-      if (i == 0) first = producer.appended() - 1;
+      if (i == 0) first = producer.last_item();
     }
   };
   while (i < waypoints.size()) {
@@ -311,6 +321,9 @@ void define_waits(Class& producer) {
       .def(
           "now", [](HeldProducer& self) { return self.get<&Producer::now>().count(); },
           doc::Producer_now)
+      .def("outcome", &HeldProducer::outcome, py::arg("item"), doc::Producer_outcome)
+      .def("wait_outcome", &HeldProducer::wait_outcome, py::arg("item"), timeout,
+           doc::Producer_wait_outcome)
       .def("wait_for_solver", &HeldProducer::wait<&Producer::wait_for_solver>, timeout,
            doc::Producer_wait_for_solver)
       .def("wait_for_room", &HeldProducer::wait<&Producer::wait_for_room>, timeout,
@@ -339,6 +352,8 @@ void define_properties(Class& producer) {
       .def_property_readonly(
           "last_time", [](HeldProducer& self) { return self.get<&Producer::last_time>().count(); },
           doc::Producer_last_time)
+      .def_property_readonly("last_item", &HeldProducer::get<&Producer::last_item>,
+                             doc::Producer_last_item)
       .def_property_readonly("appended", &HeldProducer::get<&Producer::appended>,
                              doc::Producer_appended)
       .def_property_readonly("consumed", &HeldProducer::get<&Producer::consumed>,

@@ -9,8 +9,8 @@
 #include "ipc/board/reader.hpp"
 #include "ipc/law/follower.hpp"
 #include "ipc/layout/header.hpp"
-#include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/limits.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/layout/waypoint_items.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
@@ -18,6 +18,7 @@
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
 #include "ipc/owned/continued_motion.hpp"
+#include "ipc/owned/outcome.hpp"
 #include "ipc/owned/ring.hpp"
 #include "ipc/owned/stream_start.hpp"
 #include "ipc/ring/reader.hpp"
@@ -25,6 +26,7 @@
 #include "ipc/roles/internals.hpp"
 #include "ipc/roles/refusals.hpp"
 #include "ipc/roles/replace_preview.hpp"
+#include "ipc/roles/solver_view.hpp"
 #include "ipc/runs/run_edges.hpp"
 #include "splinecast/errors.hpp"
 
@@ -42,19 +44,6 @@ constexpr Time kLeastPause = std::chrono::microseconds(200);
 
 const MonotonicClock kClock;
 
-/// The solver's region as the producer maps it. It holds the ring's consumed position.
-struct SolverView {
-  ipc::Region region;
-  ipc::RegionHeader header;
-  ipc::KnotBoardReader board;
-  std::unique_ptr<ipc::ReplacementPlanner> planner;  ///< once a replacement has been previewed
-
-  SolverView(ipc::Region mapped, const ipc::RegionHeader& described, const ipc::BoardLayout& layout)
-      : region(std::move(mapped)), header(described), board(region.bytes(), layout) {
-    region.close_descriptor();
-  }
-};
-
 }  // namespace
 
 struct Producer::Impl {
@@ -65,12 +54,13 @@ struct Producer::Impl {
   ipc::OwnedRing ring;
   bool continues;
   bool is_first;  ///< no waypoint has been appended to a ring that is continued
-  std::optional<SolverView> solver;
+  std::optional<ipc::SolverView> solver;
   ipc::WaypointRingReader sent;
   ipc::RefusalReader refused;
   ipc::StreamStart start;
   Time settled_until = Time::min();
   std::optional<ipc::Word> replacement;  ///< the item of the last one
+  ipc::Word last_item = 0;               ///< of the last accepted call
   const Clock* clock;
   std::unique_ptr<ipc::LawFollower> law;
   std::unique_ptr<ipc::LawClock> law_clock;
@@ -159,10 +149,13 @@ struct Producer::Impl {
   }
 
   /// What a producer adds to the earliest time of a replacement, so that the solver finds it in
-  /// time: the solver's longest pause.
+  /// time: the solver's longest pause. One at rest commits nothing, and wakes at once.
   [[nodiscard]] Time longest_pause() const noexcept {
-    return std::max(solver ? solver->board.longest_pause(solver->board.revision()) : kLeastPause,
-                    kLeastPause);
+    constexpr Time kLastSecond = std::chrono::seconds(1);
+    ipc::Summary summary;
+    const bool is_known = solver && solver->board.copy_newest_summary(summary) &&
+                          stream_clock().now() - summary.committed < kLastSecond;
+    return is_known ? std::max(summary.longest_pause, kLeastPause) : kLeastPause;
   }
 
   /// The header of the solver's board; null until a solver has attached.
@@ -202,8 +195,11 @@ struct Producer::Impl {
     return status;
   }
 
-  /// Wakes the solver if an item was accepted. Returns the status.
-  AppendStatus wake_solver_for(AppendStatus status) noexcept {
+  /// Wakes the solver if a call with this number of items, which are the newest ones in the ring,
+  /// was accepted. Returns the status.
+  AppendStatus wake_solver_for(AppendStatus status, ipc::Word items = 1) noexcept {
+    const ipc::Word end = ring.writer.written();
+    if (status == AppendStatus::accepted && end >= items) last_item = end - items;
     // Looks again after the store: a solver that attached meanwhile may already sleep.
     if (!solver) look_for_solver();
     if (status == AppendStatus::accepted && solver && solver->board.sleeping()) {
@@ -247,14 +243,10 @@ AppendStatus Producer::append(const Waypoint& waypoint) noexcept {
 
 AppendStatus Producer::replace_from(Time t, std::span<const Waypoint> waypoints,
                                     const ReplaceOptions& options) noexcept {
-  const ipc::Word item = impl_->ring.writer.written();
-  const AppendStatus status = impl_->replace_from(t, waypoints, options.blend);
-  // A stop that repeats one in the ring adds no item; a start state may precede the replacement.
-  const ipc::Word items = waypoints.empty() ? 1 : 1 + waypoints.size();
-  if (impl_->ring.writer.written() != item && status == AppendStatus::accepted) {
-    impl_->replacement = impl_->ring.writer.written() - items;
-  }
-  return impl_->wake_solver_for(status);
+  const AppendStatus status = impl_->wake_solver_for(
+      impl_->replace_from(t, waypoints, options.blend), 1 + waypoints.size());
+  if (status == AppendStatus::accepted) impl_->replacement = impl_->last_item;
+  return status;
 }
 
 ReplacePreview Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
@@ -270,7 +262,7 @@ void Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
   out.status = impl_->ring.writer.check_replacement(t, waypoints, known, options.blend);
   out.is_known = false;
   if (out.status != AppendStatus::accepted || !impl_->solver) return;
-  SolverView& solver = *impl_->solver;
+  ipc::SolverView& solver = *impl_->solver;
   if (!solver.planner) {
     solver.planner = std::make_unique<ipc::ReplacementPlanner>(
         solver.board, ipc::window_options(solver.header), ipc::dimension_kinds(solver.header),
@@ -348,6 +340,19 @@ void Producer::refusals(Refusals& out) {
     out.items.clear();
     out.missed = out.consumed = 0;
   }
+}
+
+std::uint64_t Producer::last_item() const noexcept { return impl_->last_item; }
+
+ItemOutcome Producer::outcome(std::uint64_t item) noexcept {
+  impl_->look_for_solver();
+  return impl_->solver ? ipc::outcome_of(impl_->solver->board, impl_->sent, item) : ItemOutcome{};
+}
+
+ItemOutcome Producer::wait_outcome(std::uint64_t item, Time timeout) {
+  ItemOutcome found;
+  (void)impl_->wait(timeout, [&] { return is_known(found = outcome(item)); });
+  return found;
 }
 
 bool Producer::wait_for_solver(Time timeout) {

@@ -52,6 +52,7 @@ struct CurveSummary {
   Course course{};
   Word met = 0;
   Word unmet = 0;
+  Word goal = 0;  ///< the open entry ends beyond, at the waypoint before this one; 0: at none
   Time blend_until{};
   Word passed_over = 0;
   Time unmet_since = Time::max();

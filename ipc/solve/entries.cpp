@@ -61,6 +61,13 @@ void PublishedCurve::check_start() noexcept {
   is_searching_ = true;
 }
 
+bool PublishedCurve::decide_start(Time t) noexcept {
+  const bool is_open = has_limits_ && entries_.is_live && is_start_open();
+  if (is_damaged_ || !is_open || t <= window_.time(0)) return false;
+  check_start();
+  return needs_entry();
+}
+
 /// Finds the state at which an entry begins: the origin if that has not settled, else the state of
 /// the committed curve at `settled`. Returns false if the board is damaged.
 bool PublishedCurve::find_state(Time settled) noexcept {

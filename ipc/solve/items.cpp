@@ -4,7 +4,7 @@
 #include "core/limits/check.hpp"
 #include "ipc/solve/stream_solver.hpp"
 
-/// Takes or refuses the items of a ring.
+/// Takes or refuses the items of a ring, and records their outcomes.
 namespace splinecast::ipc {
 namespace {
 
@@ -89,6 +89,7 @@ void StreamSolver::take_waypoint(Word number) noexcept {
   }
   if (const auto refusal = append(waypoint, number)) return refuse(number, *refusal);
   if (is_postponed_) return;
+  outcomes_.accept(number, waypoint.time);
   if (waypoint.time > settled_until_) summary_.starved = false;
   ++summary_.knots;
   summary_.newest_time = waypoint.time;
@@ -172,15 +173,13 @@ void StreamSolver::take_replacement(Word number) noexcept {
   const Word followers = may_follow ? std::min<Word>(item_.count, board_->capacity() / 2) : 0;
   batch_limit_ = is_stop(item_) ? 0 : batch_limit_ + followers;
   if (!has_begun) return;
+  note_in_force(number, t, is_stop(item_) ? OutcomeWay::stop : OutcomeWay::entry);
   // A stop after another one changes nothing.
   if (is_stop(item_) && curve_.is_stop() && t >= curve_.newest_time()) return;
   const RunBegin how{.blend = std::clamp(item_.blend, Time::zero(), limits_.max_interval),
                      .has_waypoints = !is_stop(item_),
                      .is_from_rest = rests};
-  if (rests) return begin_at_rest(how);
-  curve_.begin_run(t, how);
-  summary_.starved = false;
-  summary_.newest_time = t;
+  begin_run(t, how);
 }
 
 /// Refuses a replacement and, in the same revision, its waypoints. Otherwise a solver that takes
@@ -258,6 +257,7 @@ void StreamSolver::take_start_state(Word number) noexcept {
   // One that comes late begins as early as possible.
   const Time begin = live_ ? std::max(state.time, settled_until_) : state.time;
   ++summary_.controls;
+  note_in_force(number, begin, OutcomeWay::entry);
   curve_.begin({.time = begin,
                 .position = state.position,
                 .velocity = state.velocity,
@@ -294,6 +294,41 @@ void StreamSolver::refuse(Word number, Refusal reason) noexcept {
   board_->write_refusal(summary_.refused++, {.item = number, .reason = reason});
   ++summary_.reasons[static_cast<std::size_t>(reason)];
   has_refused_ = true;
+}
+
+RunProgress StreamSolver::progress() const noexcept {
+  const CurveSummary curve = curve_.summary();
+  return {.course = curve.course,
+          .knots = curve.run_knots,
+          .met = curve.met,
+          .unmet = curve.unmet,
+          .goal = curve.goal};
+}
+
+void StreamSolver::note_in_force(Word number, Time t, OutcomeWay way) noexcept {
+  outcomes_.record(
+      {.item = number, .kind = OutcomeKind::in_force, .way = way, .time = t, .first = number});
+}
+
+/// Records what this revision, which takes the items from `first` on, has decided. Not of a law,
+/// whose runs have no waypoints of a ring.
+void StreamSolver::note_outcomes(Word first) noexcept {
+  const RunProgress now = progress();
+  outcomes_.advance(now);
+  if (summary_.finished && summary_.end_item >= first) note_end(now);
+  outcomes_.put(summary_);
+}
+
+void StreamSolver::note_end(const RunProgress& now) noexcept {
+  const EndKind kind = curve_.ending();
+  const Time rest = summary_.newest > 0 ? curve_.end_of_motion() : settled_until_;
+  outcomes_.end(now, {.kind = kind, .rest = rest, .item = summary_.end_item});
+  if (kind != EndKind::slowed) return;
+  Word newer = 1;
+  while (newer < kOutcomesKept &&
+         outcomes_.note_slowed(now, newer, published_->time_hint(summary_.newest - newer))) {
+    ++newer;
+  }
 }
 
 }  // namespace splinecast::ipc

@@ -23,11 +23,10 @@ namespace splinecast::ipc {
 ///
 /// The published curve equals the target, except where an *entry* leads onto the target: when the
 /// newest knot has settled before its successor came, after a cut, and where a stream starts in
-/// motion. Waypoints before the end of an entry are knots of the target that the curve passes over;
-/// they have their own slots on the board, for a solver that takes over. Until an entry is found
-/// the published curve does not change, and ends at rest. An entry that ends at a waypoint is final
-/// once it has begun; one that ends beyond the newest waypoint is planned again when a newer one
-/// comes.
+/// motion. Waypoints before its end are knots of the target that the curve passes over; they have
+/// their own slots on the board, for a solver that takes over. Until an entry is found the curve
+/// does not change, and ends at rest. An entry that ends at a waypoint is final once it has begun;
+/// one that ends beyond the newest waypoint is planned again when a newer one comes.
 ///
 /// Knots on the board have consecutive numbers, run after run: `Summary::run` is the first knot of
 /// a run, which is its first waypoint or the state that it was entered from. The board is the only
@@ -49,8 +48,7 @@ class PublishedCurve {
                  const core::WindowOptions& options, DimensionKinds kinds,
                  const EntryOptions& entries);
 
-  /// Whether the board held data that this class did not write: then the curve can no longer be
-  /// used.
+  /// Whether the board held data that this class did not write. The curve is unusable then.
   [[nodiscard]] bool is_damaged() const noexcept { return is_damaged_; }
 
   /// Continues from the last commit, whose summary is `summary`. O(K·D).
@@ -176,6 +174,9 @@ class PublishedCurve {
            t >= newest_time();
   }
 
+  /// Decides a start with limits that a cut at t would keep. Returns whether it needs an entry.
+  [[nodiscard]] bool decide_start(Time t) noexcept;
+
   /// Searches for an entry onto the waypoints that are known, and makes it part of the curve.
   /// Requires may_enter_before(). So also a few waypoints between two stops are met.
   void enter_before_cut(Time settled, Time keep) noexcept;
@@ -200,8 +201,7 @@ class PublishedCurve {
   /// How the curve ends; EndKind::none before finish() has returned true.
   [[nodiscard]] EndKind ending() const noexcept { return ending_; }
 
-  /// How long after its newest waypoint's time a curve that slows down, or ends by an entry, rests
-  /// at it.
+  /// How long after its newest waypoint's time a curve that does not end as requested rests at it.
   [[nodiscard]] Time end_lateness() const noexcept {
     if (ending_ == EndKind::slowed) return slowed_.end() - newest_time();
     return ending_ == EndKind::entered ? behind_.end - newest_time() : Time::zero();

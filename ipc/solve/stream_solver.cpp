@@ -47,6 +47,7 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& boar
               .notice = live ? live->freeze_ahead : Time::zero(),
               .keeps_limits = live && beyond == Beyond::enter,
               .checks_stops = live && beyond != Beyond::report}),
+      outcomes_(board, published),
       max_batch_(std::min(kMaxBatch, board.capacity() / 2 - changed_besides(window.settle))),
       item_(ring.dimensions()),
       unwrapped_(3 * ring.dimensions()),
@@ -65,6 +66,7 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& boar
   }
   // The last writer may have died between its commit and the stores after it.
   board_->store_consumed(summary_.consumed);
+  outcomes_.take_over(summary_);
   if (!live_ && curve_.has_begun() && !summary_.finished) store_settled(curve_.settled_until());
 }
 
@@ -74,6 +76,7 @@ void StreamSolver::restore() {
   lacks_summary_ =
       look.revision > 0 && !published_->copy_summary(look, summary_);  // fails on damage only
   curve_.restore(summary_);
+  outcomes_.restore(summary_);
 }
 
 Time StreamSolver::due() const noexcept {
@@ -250,13 +253,15 @@ bool StreamSolver::can_rest() const noexcept {
   return rest_ && curve_.has_begun() && *rest_ >= curve_.earliest_cut();
 }
 
-/// Begins a run at rest where the law holds, instead of what has settled after it.
-void StreamSolver::begin_at_rest(const RunBegin& how) noexcept {
-  settled_until_ = *rest_;
-  curve_.begin_run(*rest_, how);
+/// Cuts the curve at t and begins a run there: from rest where the law holds, instead of what has
+/// settled after it.
+void StreamSolver::begin_run(Time t, const RunBegin& how) noexcept {
+  outcomes_.cut(progress(), t);
+  if (how.is_from_rest) settled_until_ = t;
+  rests_ = rests_ || how.is_from_rest;
+  curve_.begin_run(t, how);
   summary_.starved = false;
-  summary_.newest_time = *rest_;
-  rests_ = true;
+  summary_.newest_time = t;
 }
 
 /// Ends a stop that is executed when the law holds the machine.
@@ -264,7 +269,7 @@ void StreamSolver::rest_where_held() noexcept {
   if (!can_rest() || *rest_ > settled_until_ || summary_.finished) return;
   const Time latest = latest_from_rest(*rest_, settled_until_, live_->freeze_ahead);
   if (curve_.is_stopping(*rest_, latest))
-    begin_at_rest({.has_waypoints = false, .is_from_rest = true});
+    begin_run(*rest_, {.has_waypoints = false, .is_from_rest = true});
 }
 
 /// Withdraws what an earlier step or solver has left in the ring, and plans from the settled time
@@ -282,11 +287,14 @@ void StreamSolver::plan_law(Time now) noexcept {
 /// waypoints were taken.
 bool StreamSolver::enters_before(const RingItem& item) noexcept {
   if (item.kind != ItemKind::replace || summary_.consumed == unsound_entry_) return false;
-  if (!curve_.may_enter_before(item.time)) return false;
-  if (batch_ > 0) return true;
-  curve_.enter_before_cut(settled_until_, keep_);
-  has_entry_only_ = curve_.has_changes();
-  return has_entry_only_;
+  if (curve_.may_enter_before(item.time)) {
+    if (batch_ > 0) return true;
+    curve_.enter_before_cut(settled_until_, keep_);
+  } else if (!curve_.decide_start(time_of_cut(item.time))) {
+    return false;
+  }
+  has_entry_only_ = batch_ == 0 && curve_.has_changes();
+  return curve_.has_changes();
 }
 
 /// Whether an item can be taken in this revision without losing the history that must be kept. A
@@ -312,6 +320,10 @@ void StreamSolver::withdraw() noexcept {
   if (!replacement) return;
   ring_->copy(*replacement, item_);
   if (!has_room(item_)) return;
+  if (*replacement > summary_.consumed) {
+    outcomes_.record(
+        {.item = *replacement - 1, .kind = OutcomeKind::withdrawn, .first = summary_.consumed});
+  }
   summary_.withdrawn += *replacement - summary_.consumed;
   summary_.consumed = *replacement;
 }
@@ -349,6 +361,7 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   summary_.changed_from = curve_.write();
   if (!board_->is_sound()) return {};
   put_summary(curve_.summary(), summary_);
+  if (planner_ == nullptr) note_outcomes(summary_.consumed - consumed);
   // The commit time of a recorded stream is not compared with anything.
   const bool is_free = !rests_ || still_rests(clock);
   summary_.committed = is_timed_ ? clock.now() : std::max(summary_.committed, clock.about_now());

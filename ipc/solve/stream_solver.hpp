@@ -11,6 +11,7 @@
 #include "ipc/layout/summary.hpp"
 #include "ipc/ring/item.hpp"
 #include "ipc/ring/reader.hpp"
+#include "ipc/runs/outcomes.hpp"
 #include "ipc/solve/law_planner.hpp"
 #include "ipc/solve/pauses.hpp"
 #include "ipc/solve/published_curve.hpp"
@@ -124,7 +125,7 @@ class StreamSolver {
   [[nodiscard]] Time time_of_cut(Time t) const noexcept;
   [[nodiscard]] bool can_rest() const noexcept;
   void rest_where_held() noexcept;
-  void begin_at_rest(const RunBegin& how) noexcept;
+  void begin_run(Time t, const RunBegin& how) noexcept;
   [[nodiscard]] bool is_damaged() const noexcept { return lacks_summary_ || curve_.is_damaged(); }
   [[nodiscard]] Word reachable(Word written) const noexcept;
   [[nodiscard]] bool enters_before(const RingItem& item) noexcept;
@@ -153,6 +154,10 @@ class StreamSolver {
   void check_commit(Time now) noexcept;
   void store_settled(Time t) noexcept;
   [[nodiscard]] Time settled_by_commit() const noexcept;
+  [[nodiscard]] RunProgress progress() const noexcept;
+  void note_in_force(Word number, Time t, OutcomeWay way) noexcept;
+  void note_outcomes(Word first) noexcept;
+  void note_end(const RunProgress& now) noexcept;
   [[nodiscard]] bool still_rests(const Clock& clock) noexcept;
   StepResult publish(const Clock& clock, Word consumed) noexcept;
 
@@ -163,6 +168,7 @@ class StreamSolver {
   std::optional<LiveOptions> live_;
   Beyond beyond_;
   PublishedCurve curve_;
+  Outcomes outcomes_;
   std::size_t max_batch_;
   Summary summary_;
   bool lacks_summary_ =

@@ -267,6 +267,7 @@ CurveSummary PublishedCurve::summary() const noexcept {
           .course = course_,
           .met = met_,
           .unmet = unmet_,
+          .goal = course_ == Course::beyond && ends_at_known_ ? known_ : 0,
           .blend_until = blend_until_,
           .passed_over = passed_before_ + passed_over(),
           .unmet_since = unmet_since_,

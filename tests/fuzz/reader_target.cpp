@@ -33,6 +33,10 @@ void look_around(const ipc::KnotBoardReader& board) {
   std::array<ipc::RefusedItem, 3> refused{};
   require(board.copy_refusals(summary, 0, refused) <= refused.size(),
           "refusals fit into their array");
+  for (const ipc::Word back : {ipc::Word{1}, ipc::Word{9}, ipc::Word{ipc::kOutcomesKept}}) {
+    if (const auto record = board.outcome(summary.outcomes - back)) (void)record->is_of(r);
+  }
+  (void)board.outcomes_lost();
   (void)ipc::segment_before(board, summary, summary.newest);
   (void)board.step_times();
   (void)(board.consumed() + (board.sleeping() ? 1U : 0U));

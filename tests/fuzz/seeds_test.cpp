@@ -121,7 +121,7 @@ TEST(FuzzSeeds, HaveZerosInReservedFields) {
       const std::size_t summary = control + ipc::kSummarySlot + cell * ipc::kSummaryWords;
       EXPECT_EQ(used_reserves(ipc::kSummaryFields, board, summary, reserved), 0) << seed.name;
     }
-    EXPECT_EQ(reserved, 4) << "outcomes and stoppers; holders of both cells";
+    EXPECT_EQ(reserved, 3) << "stoppers; holders of both cells";
   }
 }
 

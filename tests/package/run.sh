@@ -134,8 +134,8 @@ for linked in shared static pkg_config; do
   [ "$(wc -l <"$work/out/recorded.csv")" -gt 500 ] || { echo "9_recorder has few rows"; exit 1; }
   printed 3_embedded_solver '([0-9]+) of \1 items consumed, 0 refused'
   printed 10_override 'at most .* mm from the circle; .* s longer than at full rate'
-  printed 4_redirect 'redirect accepted at x = .* m/s'
-  printed 4_redirect 'stop accepted at x = .* m/s'
+  printed 4_redirect 'redirect in force at [0-9]* ns: entry; now at x = .* m/s'
+  printed 4_redirect 'stop in force at [0-9]* ns: stop; now at x = .* m/s'
   printed 4_redirect 'at rest at x = .* m'
   printed 5_refusals 'row 1234 again: duplicate'
   for item in 500 1500 2500; do  # without its time if the ring has overwritten the item

@@ -22,8 +22,7 @@ namespace [[gnu::visibility("default")]] splinecast {
 
 /// An item that the ring accepted and the solver refused.
 struct ItemRefusal {
-  std::uint64_t item = 0;      ///< number of the item: Producer::appended() − 1 after its append;
-                               ///< waypoint i of n of a replacement: appended() − n + i after it
+  std::uint64_t item = 0;      ///< number of the item: see Producer::last_item()
   std::optional<Time> time{};  ///< of the item; unset if the ring has overwritten it
   Refusal reason{};
   std::optional<LimitExcess> excess{};  ///< for `beyond_limits`, while the board has it
@@ -115,7 +114,7 @@ struct StartOptions {
 ///     if (producer.finish() != AppendStatus::accepted) return 1;
 ///     while (!producer.wait_until_consumed(10s) && producer.solver_alive()) {}
 ///
-/// `accepted` means only that the ring has the item: see refusals().
+/// `accepted` means only that the ring has the item: see outcome() and refusals().
 class Producer {
  public:
   /// Creates the stream, creates it again if it is finished, or continues it if its producer died
@@ -251,6 +250,23 @@ class Producer {
   /// thread only.
   [[nodiscard]] Refusals refusals();
   void refusals(Refusals& out);
+
+  /// The number of the item of the last call that was accepted: of a waypoint, a start state or the
+  /// finish; of a replacement or a stop that of the replacement, whose waypoint i has this number
+  /// + 1 + i. A stop that is already in the ring has the number of that one. 0 before the first.
+  [[nodiscard]] std::uint64_t last_item() const noexcept;
+
+  /// What became of an item, by the newest revision: `waiting` for a number that was not given yet.
+  /// Outcomes are kept on the board: the last 256 that are not those of a waypoint on the spline at
+  /// its own time, and the last 1,024 refusals. `forgotten` is an item that may have had an older
+  /// one, one that the ring no longer has and of which there is no record, and one that another
+  /// solver took, unless there is a record: never a guess. O(outcomes kept); reads the board; no
+  /// system call except the search for a solver, as in append. Producer's thread only.
+  [[nodiscard]] ItemOutcome outcome(std::uint64_t item) noexcept;
+
+  /// Waits until an outcome is known: neither `waiting` nor `undecided`. Returns the outcome then,
+  /// or after the timeout. Check solver_alive() before waiting again.
+  [[nodiscard]] ItemOutcome wait_outcome(std::uint64_t item, Time timeout);
 
   /// Waits until a solver has attached to the stream. Returns false after the timeout.
   [[nodiscard]] bool wait_for_solver(Time timeout);

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "splinecast/limits.hpp"
@@ -62,6 +64,47 @@ enum class Refusal : std::uint8_t {
 };
 inline constexpr std::uint8_t kRefusals = 16;
 
+/// What became of an item that the ring has accepted.
+enum class OutcomeKind : std::uint8_t {
+  waiting,      ///< no solver has taken it yet
+  undecided,    ///< taken, but the curve waits for, or is in, a transition that may still pass over
+                ///< it
+  in_force,     ///< the curve is at the waypoint, or does what the item asks, at `time`
+  passed_over,  ///< the curve goes from before the waypoint to a later one
+  withdrawn,    ///< a replacement or a stop took its place
+  refused,      ///< by the solver, for `reason`
+  forgotten,    ///< not known any more: see Producer::outcome()
+};
+inline constexpr std::size_t kOutcomeKinds = 7;
+
+/// By which part of the curve an item is in force.
+enum class OutcomeWay : std::uint8_t {
+  spline,  ///< the spline through the waypoints
+  entry,   ///< a transition: it ends at the waypoint, or begins with the replacement or start state
+  stop,    ///< a stop, which begins at `time`
+  end,     ///< the end of the stream: the curve slows down or ends there, or, of the item that
+           ///< finished the stream, rests from then on
+};
+inline constexpr std::size_t kOutcomeWays = 4;
+
+/// The outcome of an item.
+struct ItemOutcome {
+  OutcomeKind kind{};
+  std::optional<Time> time{};  ///< in_force only: when. Of a replacement that came late, and of the
+                               ///< waypoints of an end that slows down, later than its own time
+  OutcomeWay way{};            ///< in_force only
+  Refusal reason{};            ///< refused only
+  bool is_final = false;  ///< nothing can change it any more: it is in force at a time that has
+                          ///< settled, passed over, withdrawn or refused
+
+  friend bool operator==(const ItemOutcome&, const ItemOutcome&) = default;
+};
+
+/// Whether it is known what became of the item.
+[[nodiscard]] constexpr bool is_known(const ItemOutcome& outcome) noexcept {
+  return outcome.kind != OutcomeKind::waiting && outcome.kind != OutcomeKind::undecided;
+}
+
 /// The validity of a sample.
 enum class SampleStatus : std::uint8_t {
   settled,          ///< final: every reader gets the same bits at this time, now and later
@@ -113,5 +156,10 @@ struct StepResult {
 [[nodiscard]] std::string_view to_string(AppendStatus status) noexcept;
 [[nodiscard]] std::string_view to_string(Refusal refusal) noexcept;
 [[nodiscard]] std::string_view to_string(SampleStatus status) noexcept;
+[[nodiscard]] std::string_view to_string(OutcomeKind kind) noexcept;
+[[nodiscard]] std::string_view to_string(OutcomeWay way) noexcept;
+
+/// `in force at 123 ns: entry`, `refused: too late`, `passed over`
+[[nodiscard]] std::string to_string(const ItemOutcome& outcome);
 
 }  // namespace splinecast

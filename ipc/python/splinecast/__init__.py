@@ -45,6 +45,7 @@ from .errors import BadRegion, BadRequest, Error, Full, NoSuchStream, OutOfResou
 from .records import (
     Alive,
     Excess,
+    ItemOutcome,
     ItemRefusal,
     LawRate,
     LimitExcess,
@@ -57,12 +58,12 @@ from .records import (
     Segment,
     StepResult,
 )
-from .statuses import AppendStatus, Refusal, SampleStatus, SegmentKind
+from .statuses import AppendStatus, OutcomeKind, OutcomeWay, Refusal, SampleStatus, SegmentKind
 
 __all__ = [
-    "Alive", "AppendStatus", "BadRegion", "BadRequest", "Block", "Curve", "Error", "Excess", "Full", "ItemRefusal",
-    "LawRate", "LimitExcess", "Limits", "MotionPeaks", "NoSuchStream", "OutOfResources", "Producer", "Progress",
-    "RateCommander", "Reader", "Refusal", "Refusals", "Refused", "ReplacementBegin",
+    "Alive", "AppendStatus", "BadRegion", "BadRequest", "Block", "Curve", "Error", "Excess", "Full", "ItemOutcome",
+    "ItemRefusal", "LawRate", "LimitExcess", "Limits", "MotionPeaks", "NoSuchStream", "OutOfResources", "OutcomeKind",
+    "OutcomeWay", "Producer", "Progress", "RateCommander", "Reader", "Refusal", "Refusals", "Refused", "ReplacementBegin",
     "ReplacePreview", "SampleStatus", "Segment",
     "SegmentKind", "Snapshot", "Solver", "State", "StepResult", "StreamBusy", "__version__", "cross_validated_lambda",
     "fit", "methods", "remove", "streams",

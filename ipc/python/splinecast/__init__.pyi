@@ -15,6 +15,7 @@ from .errors import Refused as Refused
 from .errors import StreamBusy as StreamBusy
 from .records import Alive as Alive
 from .records import Excess as Excess
+from .records import ItemOutcome as ItemOutcome
 from .records import ItemRefusal as ItemRefusal
 from .records import LawRate as LawRate
 from .records import LimitExcess as LimitExcess
@@ -27,6 +28,8 @@ from .records import ReplacePreview as ReplacePreview
 from .records import Segment as Segment
 from .records import StepResult as StepResult
 from .statuses import AppendStatus as AppendStatus
+from .statuses import OutcomeKind as OutcomeKind
+from .statuses import OutcomeWay as OutcomeWay
 from .statuses import Refusal as Refusal
 from .statuses import SampleStatus as SampleStatus
 from .statuses import SegmentKind as SegmentKind
@@ -308,6 +311,32 @@ class Producer:
         Refusals
             A list of `ItemRefusal`: item, time, reason, excess.
         """
+    def outcome(self, item: int) -> ItemOutcome:
+        """Return what became of an item, by the newest revision.
+
+        Parameters
+        ----------
+        item : int
+            Its number: what the call that sent it returned. Waypoint i of a replacement has the
+            number of the replacement + 1 + i.
+
+        Returns
+        -------
+        ItemOutcome
+            kind, time, way, reason, is_final. FORGOTTEN is never a guess: the board keeps the last
+            256 outcomes that are not those of a waypoint on the spline at its own time, and the
+            last 1,024 refusals, and a solver knows only the items that it took itself.
+        """
+    def wait_outcome(self, item: int, timeout: Optional[Seconds] = None) -> ItemOutcome:
+        """Wait until it is known what became of an item; return its outcome.
+
+        Parameters
+        ----------
+        item : int
+            Its number.
+        timeout : float, optional
+            Seconds; then the outcome is WAITING or UNDECIDED.
+        """
     def wait_for_solver(self, timeout: Optional[Seconds] = None) -> bool:
         """Wait until a solver has attached; return False after the timeout [s]."""
     def wait_for_room(self, timeout: Optional[Seconds] = None) -> bool:
@@ -354,6 +383,9 @@ class Producer:
     @property
     def last_time(self) -> int:
         """Time of the newest item, of this or an earlier producer [ns]; 0 if there is none."""
+    @property
+    def last_item(self) -> int:
+        """The number of the item of the last call that was accepted; of a replacement its own."""
     @property
     def appended(self) -> int:
         """Number of items appended, over the stream's life."""

@@ -5,7 +5,7 @@ from typing import Dict, Iterable, List, NamedTuple, Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from .statuses import AppendStatus, Refusal, SampleStatus, SegmentKind
+from .statuses import AppendStatus, OutcomeKind, OutcomeWay, Refusal, SampleStatus, SegmentKind
 
 Array = NDArray[np.float64]
 
@@ -88,6 +88,21 @@ class Refusals(List[ItemRefusal]):
         super().__init__(items)
         self.missed = missed
         self.consumed = consumed
+
+
+class ItemOutcome(NamedTuple):
+    """What became of an item that the ring has accepted."""
+
+    kind: OutcomeKind
+    time: Optional[int]  #: IN_FORCE: when [ns]; if the item came late, later than its own time
+    way: Optional[OutcomeWay]  #: IN_FORCE: by which part of the curve
+    reason: Optional[Refusal]  #: REFUSED: why
+    is_final: bool  #: nothing can change it any more: its time has settled, or it is not in force
+
+    def __str__(self) -> str:
+        if self.reason is not None:
+            return f"{self.kind}: {self.reason}"
+        return str(self.kind) if self.time is None else f"{self.kind} at {self.time} ns: {self.way}"
 
 
 class MotionPeaks(NamedTuple):

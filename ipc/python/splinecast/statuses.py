@@ -54,6 +54,27 @@ class Refusal(_Status):
     CANNOT_FOLLOW = 15  #: no waypoint met for 3 s, and no entry from rest can lead to this one
 
 
+class OutcomeKind(_Status):
+    """What became of an item that the ring has accepted."""
+
+    WAITING = 0  #: no solver has taken it yet
+    UNDECIDED = 1  #: taken, but a transition may still pass over it
+    IN_FORCE = 2  #: the curve is at the waypoint, or does what the item asks, at `time`
+    PASSED_OVER = 3  #: the curve goes from before the waypoint to a later one
+    WITHDRAWN = 4  #: a replacement or a stop took its place
+    REFUSED = 5  #: by the solver, for `reason`
+    FORGOTTEN = 6  #: not known any more
+
+
+class OutcomeWay(_Status):
+    """By which part of the curve an item is in force."""
+
+    SPLINE = 0  #: the spline through the waypoints
+    ENTRY = 1  #: a transition ends at the waypoint, or begins with the replacement or start state
+    STOP = 2  #: a stop, which begins at `time`
+    END = 3  #: the curve slows down or ends there, or rests from then on
+
+
 class SampleStatus(_Status):
     """The validity of a sample."""
 

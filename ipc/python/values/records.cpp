@@ -49,6 +49,19 @@ py::object to_record(const Refusals& refusals, std::span<const std::string> name
   return type("Refusals")(items, refusals.missed, refusals.consumed);
 }
 
+py::object to_record(const ItemOutcome& outcome) {
+  const bool is_in_force = outcome.kind == OutcomeKind::in_force;
+  const bool is_refused = outcome.kind == OutcomeKind::refused;
+  py::object time = py::none();
+  if (outcome.time) time = py::int_(outcome.time->count());
+  const auto given = [](bool has, const char* name, auto number) -> py::object {
+    return has ? member(name, static_cast<std::uint8_t>(number)) : py::none();
+  };
+  return type("ItemOutcome")(member("OutcomeKind", static_cast<std::uint8_t>(outcome.kind)), time,
+                             given(is_in_force, "OutcomeWay", outcome.way),
+                             given(is_refused, "Refusal", outcome.reason), outcome.is_final);
+}
+
 py::object to_record(const std::optional<ReplacementBegin>& found) {
   if (!found) return py::none();
   return type("ReplacementBegin")(found->begin.count(), found->from_rest);

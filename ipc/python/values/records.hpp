@@ -22,6 +22,7 @@ namespace py = pybind11;
 /// Names are those of the dimensions, or none.
 [[nodiscard]] py::object to_record(const ItemRefusal& refusal, std::span<const std::string> names);
 [[nodiscard]] py::object to_record(const Refusals& refusals, std::span<const std::string> names);
+[[nodiscard]] py::object to_record(const ItemOutcome& outcome);
 [[nodiscard]] py::object to_record(const std::optional<ReplacementBegin>& found);
 [[nodiscard]] py::object to_record(const ReplacePreview& preview);
 [[nodiscard]] py::object to_record(const LawRate& rate);

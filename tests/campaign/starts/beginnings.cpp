@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <utility>
 
 #include "ipc/roles/internals.hpp"
 #include "splinecast/errors.hpp"
@@ -33,7 +34,11 @@ double Path::at(Time t) const noexcept {
 }
 
 Beginnings::Beginnings(std::uint64_t seed, Random& random, Facts& facts)
-    : seed_(seed), random_(random), facts_(facts), world_(seed, random, facts) {}
+    : seed_(seed),
+      random_(random),
+      facts_(facts),
+      world_(seed, random, facts),
+      items_(seed, world_, facts) {}
 
 void Beginnings::play(std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) begin();
@@ -64,7 +69,7 @@ void Beginnings::begin() {
   if (!is_brief) return end();
   // A program that sends all of its waypoints at once, and ends.
   facts_.count(Event::brief_streams);
-  for (int i = 0; i < 8; ++i, next_ += interval_) (void)send_next();
+  for (int i = 0; i < 8; ++i, next_ += interval_) (void)append(next_);
   finish();
 }
 
@@ -72,6 +77,7 @@ void Beginnings::create() {
   world_.disturb_solver();
   producer_.emplace(
       ipc::Internals::producer(world_.name(), world_.producer_options(), world_.clock()));
+  items_.begin(*producer_);
   if (!producer_->continues()) {
     facts_.count(is_removed_ ? Event::created_after_rm : Event::created);
   }
@@ -137,8 +143,15 @@ AppendStatus Beginnings::try_first(Time t) {
   const double how = random_.unit();
   if (how < 0.1) return replace(t, false);
   if (how < 0.2) return replace(t, true);
-  const std::vector<double> x = world_.position(path_.at(t));
-  return producer_->append({.time = t, .position = x});
+  return append(t);
+}
+
+AppendStatus Beginnings::append(Time t) {
+  const double s = path_.at(t);
+  const std::vector<double> x = world_.position(s);
+  const AppendStatus status = producer_->append({.time = t, .position = x});
+  if (status == AppendStatus::accepted) items_.note(*producer_, s);
+  return status;
 }
 
 /// Begins with a replacement by one waypoint that is a little later.
@@ -149,6 +162,7 @@ AppendStatus Beginnings::replace(Time t, bool is_soonest) {
   const AppendStatus status =
       is_soonest ? producer_->replace_from(path) : producer_->replace_from(t, path);
   if (status == AppendStatus::accepted) {
+    items_.note(*producer_, path_.at(waypoint.time), 1);
     facts_.count(is_soonest ? Event::starts_replaced_soonest : Event::starts_replaced);
   }
   return status;
@@ -186,19 +200,15 @@ void Beginnings::note(AppendStatus status) {
   if (status == AppendStatus::too_late) facts_.count(Event::refused_as_too_late);
 }
 
-AppendStatus Beginnings::send_next() {
-  const std::vector<double> x = world_.position(path_.at(next_));
-  return producer_->append({.time = next_, .position = x});
-}
-
 /// Sends the waypoints of the path until `until`, as far ahead as the lead.
 void Beginnings::send_waypoints(Time until) {
   while (world_.clock().now() < until) {
     while (next_ < world_.clock().now() + lead_) {
-      if (send_next() == AppendStatus::full) break;
+      if (append(next_) == AppendStatus::full) break;
       next_ += interval_;
     }
     world_.pass(milliseconds(4));
+    if (random_.chance(0.1)) items_.check(*producer_, false);
   }
 }
 
@@ -209,10 +219,14 @@ void Beginnings::move_on() {
     send_waypoints(std::min(end, world_.clock().now() + milliseconds(200)));
     world_.disturb_solver();
     const Time t = producer_->earliest() + random_.between(milliseconds(-10), milliseconds(50));
-    path_ = new_path(t);
+    const Path before = std::exchange(path_, new_path(t));
     const AppendStatus status = replace(t, random_.chance(0.5));
     note(status);
-    if (status == AppendStatus::accepted) next_ = t + 2 * interval_;
+    if (status == AppendStatus::accepted) {
+      next_ = t + 2 * interval_;
+    } else {
+      path_ = before;
+    }
     send_waypoints(world_.clock().now() + milliseconds(8));
     const auto begin = producer_->replacement_begin();
     if (begin && begin->begin > t) facts_.count(Event::late_replacements);
@@ -223,7 +237,9 @@ void Beginnings::move_on() {
 void Beginnings::end() {
   const double how = random_.unit();
   if (how < 0.45) return kill();
-  if (how < 0.55) (void)producer_->replace_from({});
+  if (how < 0.55 && producer_->replace_from({}) == AppendStatus::accepted) {
+    items_.note(*producer_, std::nullopt);
+  }
   finish();
   if (how > 0.92) {
     producer_.reset();
@@ -247,6 +263,7 @@ void Beginnings::finish() {
   facts_.count(Event::finishes);
   world_.pass_until(kPatience, [this] {
     const AppendStatus status = producer_->finish();
+    if (status == AppendStatus::accepted) items_.note(*producer_, std::nullopt);
     return status == AppendStatus::accepted || status == AppendStatus::finished;
   });
   if (random_.chance(0.4)) return producer_.reset();  // does not wait for the solver
@@ -258,6 +275,7 @@ void Beginnings::finish() {
     facts_.breach(Breach::never_consumed, seed_,
                   fmt::format("{} of {}", producer_->consumed(), producer_->appended()));
   }
+  items_.check(*producer_, is_consumed);
   check_accounts();
   producer_.reset();
 }

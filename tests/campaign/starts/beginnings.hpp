@@ -6,6 +6,7 @@
 
 #include "splinecast/producer.hpp"
 #include "tests/campaign/starts/facts.hpp"
+#include "tests/campaign/starts/sent_items.hpp"
 #include "tests/campaign/starts/world.hpp"
 #include "tests/campaign/streams/random.hpp"
 
@@ -40,7 +41,7 @@ class Beginnings {
   void choose_start(Time t);
   void note(AppendStatus status);
   void move_on();
-  AppendStatus send_next();
+  AppendStatus append(Time t);
   void send_waypoints(Time until);
   void end();
   void kill();
@@ -52,6 +53,7 @@ class Beginnings {
   Random& random_;
   Facts& facts_;
   World world_;
+  SentItems items_;
   std::optional<Producer> producer_;
   Path path_;
   Time interval_{};

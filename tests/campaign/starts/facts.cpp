@@ -15,7 +15,8 @@ constexpr std::array<std::string_view, kBreaches> kNamesOfBreaches{
     "accepted replacements that were refused as too late",
     "items without an account",
     "producers that could not begin",
-    "items that no solver has taken"};
+    "items that no solver has taken",
+    "items with a wrong outcome, or none"};
 
 constexpr std::array<std::string_view, kEvents> kNamesOfEvents{
     "beginnings",
@@ -42,7 +43,13 @@ constexpr std::array<std::string_view, kEvents> kNamesOfEvents{
     "pauses of a solver",
     "excesses counted",
     "samples compared",
-    "boards that the controller has left"};
+    "boards that the controller has left",
+    "outcomes of items compared",
+    "items in force by an entry",
+    "items passed over",
+    "items withdrawn",
+    "items refused by the solver",
+    "items forgotten"};
 
 }  // namespace
 

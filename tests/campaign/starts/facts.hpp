@@ -18,8 +18,9 @@ enum class Breach : std::uint8_t {
   accounts,        ///< items are not knots, refused, withdrawn or controls
   never_begins,    ///< a producer that follows the messages cannot begin
   never_consumed,  ///< items stay in the ring although a solver lives
+  outcome,         ///< an item has no outcome, it changes after it was final, or it is not so
 };
-inline constexpr std::size_t kBreaches = 8;
+inline constexpr std::size_t kBreaches = 9;
 [[nodiscard]] std::string_view to_string(Breach breach) noexcept;
 
 /// Events that a long campaign has to provoke.
@@ -49,8 +50,14 @@ enum class Event : std::uint8_t {
   excesses_counted,
   samples,
   samples_of_other_boards,
+  outcomes,
+  items_entered,
+  items_passed_over,
+  items_withdrawn,
+  items_refused,
+  items_forgotten,
 };
-inline constexpr std::size_t kEvents = 25;
+inline constexpr std::size_t kEvents = 31;
 [[nodiscard]] std::string_view to_string(Event event) noexcept;
 
 /// Counters of a campaign.

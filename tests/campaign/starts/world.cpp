@@ -41,6 +41,7 @@ World::World(std::uint64_t seed, Random& random, Facts& facts)
 
 World::~World() {
   reader_.reset();
+  observer_.reset();
   solver_.reset();
   try {
     remove();
@@ -72,7 +73,6 @@ std::vector<double> World::position(double s) const {
   return position;
 }
 
-/// The largest way in one dimension; the angle of a rotation.
 double World::distance(std::span<const double> from, std::span<const double> to) const {
   double largest = 0;
   for (std::size_t d = 0; d < linear(); ++d) {
@@ -87,6 +87,19 @@ double World::distance(std::span<const double> from, std::span<const double> to)
     more = std::hypot(more, to[d] + from[d]);
   }
   return std::max(largest, 4 * std::asin(std::min(1.0, std::min(less, more) / 2)));
+}
+
+std::optional<std::vector<double>> World::position_at(Time t, std::uint64_t stream) {
+  State at(dimensions_);
+  try {
+    const bool is_open = observer_ && ipc::Internals::header(*observer_).stream_id == stream;
+    if (!is_open || observer_->sample(t, at) == SampleStatus::retired) observer_.emplace(name_);
+    if (ipc::Internals::header(*observer_).stream_id != stream) return std::nullopt;
+    if (!has_values(observer_->sample(t, at))) return std::nullopt;
+  } catch (const StreamError&) {
+    return std::nullopt;
+  }
+  return std::vector<double>(at.position().begin(), at.position().end());
 }
 
 void World::start_solver() {

@@ -70,6 +70,10 @@ class World {
   [[nodiscard]] std::size_t dimensions() const noexcept { return dimensions_; }
   /// The position of all dimensions at the coordinate s.
   [[nodiscard]] std::vector<double> position(double s) const;
+  /// The largest way in one dimension; the angle of a rotation.
+  [[nodiscard]] double distance(std::span<const double> from, std::span<const double> to) const;
+  /// The position of a stream's curve at t; nothing if its board does not have it.
+  [[nodiscard]] std::optional<std::vector<double>> position_at(Time t, std::uint64_t stream);
   /// The position that the controller holds; empty if it has followed nothing.
   [[nodiscard]] std::span<const double> held() const noexcept { return held_; }
   /// The machine was moved to another place by hand, or by another program.
@@ -98,7 +102,6 @@ class World {
   [[nodiscard]] std::size_t linear() const noexcept {
     return dimensions_ - (has_quaternion_ ? kQuaternionSize : 0);
   }
-  [[nodiscard]] double distance(std::span<const double> from, std::span<const double> to) const;
 
   std::uint64_t seed_;
   Random& random_;
@@ -112,6 +115,7 @@ class World {
   std::optional<Solver> solver_;
   Time asleep_until_{};  ///< the solver makes no step, or does not exist, before
   std::optional<Reader> reader_;
+  std::optional<Reader> observer_;  ///< of any time
   State sampled_;
   std::vector<double> held_;
   Time held_at_{};

@@ -57,6 +57,7 @@ class CPointers : public ::testing::Test {
   void add_replacement();
   void add_old_end();
   void add_producer_state();
+  void add_outcomes();
   void add_producer_outputs();
   void add_solver();
   void add_reader();
@@ -80,6 +81,7 @@ class CPointers : public ::testing::Test {
   CState state_{2};
   std::int64_t time_ = 0;
   uint64_t number_ = 0;
+  splinecast_outcome outcome_ = SPLINECAST_OUTCOME_INIT;
   size_t size_ = 0;
   splinecast_refusal refusal_ = {.item = 0,
                                  .time = 0,

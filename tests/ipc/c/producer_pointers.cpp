@@ -129,7 +129,23 @@ void CPointers::add_producer_outputs() {
   });
 }
 
+void CPointers::add_outcomes() {
+  producer("splinecast_producer_outcome",
+           [this](auto* p) { return splinecast_producer_outcome(p, 0, &outcome_); });
+  wrong_.pointer<splinecast_outcome>("splinecast_producer_outcome", "out", [this](auto* p) {
+    return splinecast_producer_outcome(c_.producer, 0, p);
+  });
+  producer("splinecast_producer_wait_outcome",
+           [this](auto* p) { return splinecast_producer_wait_outcome(p, 0, 0, &outcome_); });
+  wrong_.pointer<splinecast_outcome>("splinecast_producer_wait_outcome", "out", [this](auto* p) {
+    return splinecast_producer_wait_outcome(c_.producer, 0, 0, p);
+  });
+  HANDLE_AND_OUTPUT(producer, uint64_t, splinecast_producer_last_item, "item", c_.producer,
+                    number_);
+}
+
 void CPointers::add_producer_state() {
+  add_outcomes();
   HANDLE_ONLY(producer, splinecast_producer_wait_for_solver, , 0);
   HANDLE_ONLY(producer, splinecast_producer_wait_for_room, , 0);
   HANDLE_ONLY(producer, splinecast_producer_wait_until_consumed, , 0);

@@ -265,6 +265,12 @@ TEST(CProperties, TextsOfResultsAreThoseOfTheLibrary) {
     EXPECT_EQ(splinecast_sample_text(i), to_string(static_cast<SampleStatus>(i)));
     EXPECT_EQ(splinecast_has_values(i), has_values(static_cast<SampleStatus>(i)) ? 1 : 0);
   }
+  for (int i = 0; i < static_cast<int>(kOutcomeKinds); ++i) {
+    EXPECT_EQ(splinecast_outcome_text(i), to_string(static_cast<OutcomeKind>(i)));
+  }
+  for (int i = 0; i < static_cast<int>(kOutcomeWays); ++i) {
+    EXPECT_EQ(splinecast_way_text(i), to_string(static_cast<OutcomeWay>(i)));
+  }
   for (int i = 1; i < kRefusals; ++i) {
     EXPECT_EQ(splinecast_refusal_text(i), to_string(static_cast<Refusal>(i)));
   }
@@ -272,6 +278,8 @@ TEST(CProperties, TextsOfResultsAreThoseOfTheLibrary) {
        {-1, 100, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()}) {
     EXPECT_STREQ(splinecast_append_text(number), "unknown");
     EXPECT_STREQ(splinecast_sample_text(number), "unknown");
+    EXPECT_STREQ(splinecast_outcome_text(number), "unknown");
+    EXPECT_STREQ(splinecast_way_text(number), "unknown");
     EXPECT_STREQ(splinecast_refusal_text(number), "unknown");
     EXPECT_STREQ(splinecast_wait_text(number), "unknown");
     EXPECT_EQ(splinecast_has_values(number), 0);

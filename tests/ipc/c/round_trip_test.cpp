@@ -239,6 +239,27 @@ TEST(CRoundTrip, APreviewIsThatOfTheProducerClass) {
   EXPECT_EQ(state.values[1], positions.back());
 }
 
+TEST(CRoundTrip, AnOutcomeIsThatOfTheProducerClass) {
+  CStream c;
+  c.send(3);
+  c.finish();
+  uint64_t item = 0;
+  ASSERT_EQ(splinecast_producer_last_item(c.producer, &item), 0);
+  EXPECT_EQ(item, 3U);
+  for (uint64_t i = 0; i < 5; ++i) {
+    const ItemOutcome expected = c.producer->producer.outcome(i);
+    splinecast_outcome found = SPLINECAST_OUTCOME_INIT;
+    const int kind = splinecast_producer_wait_outcome(c.producer, i, 0, &found);
+    EXPECT_EQ(kind, static_cast<int>(expected.kind));
+    ASSERT_EQ(splinecast_producer_outcome(c.producer, i, &found), kind);
+    EXPECT_EQ(found.kind, kind);
+    EXPECT_EQ(found.way, static_cast<int>(expected.way));
+    EXPECT_EQ(found.reason, 0);
+    EXPECT_EQ(found.is_final, expected.is_final ? 1 : 0);
+    EXPECT_EQ(found.time, expected.time.value_or(Time::zero()).count());
+  }
+}
+
 TEST(CRoundTrip, AStopHasNoWaypoints) {
   const CStream c;
   c.send(20);

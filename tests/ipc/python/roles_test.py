@@ -7,7 +7,7 @@ import numpy as np
 
 import splinecast
 from fixture import MS, PATIENCE, StreamTest, solve, wait_for
-from splinecast import AppendStatus, Refusal, SampleStatus
+from splinecast import AppendStatus, OutcomeKind, OutcomeWay, Refusal, SampleStatus
 
 
 class Roles(StreamTest):
@@ -118,6 +118,8 @@ class Roles(StreamTest):
         (refusal,) = producer.refusals()
         self.assertEqual((refusal.item, refusal.time), (item, 2_000_000_000))
         self.assertIs(refusal.reason, Refusal.BEYOND_LIMITS)
+        self.assertEqual(str(producer.outcome(item)), "refused: beyond limits")
+        self.assertIs(producer.outcome(item).reason, Refusal.BEYOND_LIMITS)
         self.assertEqual((refusal.excess.kind, refusal.excess.limit), ("velocity", 1))
         self.assertIn("(q)", str(refusal))
         self.assertEqual(producer.refusals(), [])
@@ -255,9 +257,17 @@ class Live(StreamTest):
             self.assertIs(preview.status, AppendStatus.ACCEPTED)
             self.assertTrue(preview.is_known and preview.enters)
             self.assertEqual(preview.motion.velocity.shape, (1,))
-            producer.replace_from(later, [later + 500 * MS], [[0.0]], blend=0.1)
-            producer.replace_from(0)
+            item = producer.replace_from(later, [later + 500 * MS], [[0.0]], blend=0.1)
+            outcome = producer.wait_outcome(item, PATIENCE)
+            self.assertEqual(outcome[:4], (OutcomeKind.IN_FORCE, later, OutcomeWay.ENTRY, None))
+            self.assertEqual(str(outcome), f"in force at {later} ns: entry")
+            self.assertEqual(str(producer.outcome(item - 1)), "withdrawn")
+            stop = producer.replace_from(0)
+            self.assertEqual(producer.last_item, stop)
             self.assertTrue(producer.wait_until_consumed(PATIENCE))
+            self.assertIs(producer.outcome(stop).way, OutcomeWay.STOP)
+            self.assertIs(producer.outcome(item).kind, OutcomeKind.WITHDRAWN)
+            self.assertIs(producer.outcome(stop + 1).kind, OutcomeKind.WAITING)
             self.assertEqual(producer.refusals(), [])
             rest = wait_for(lambda: (s := reader.sample(time.monotonic())).status is SampleStatus.HOLDING and s)
             np.testing.assert_array_equal(rest.velocity, [0])

@@ -148,6 +148,22 @@ TEST_F(ContinuedRing, IsReplacedOnlyByTheFirstWaypoint) {
   EXPECT_EQ(producer_->appended(), items + 1) << "the user's own jump";
 }
 
+/// After the settled time and the freeze-ahead come the solver's pauses, 0.2 ms at least.
+TEST_F(ContinuedRing, SaysHowEarlyAReplacementIsInTime) {
+  constexpr Time kFreeze = milliseconds(5);
+  send_motion(milliseconds(400));
+  pass(milliseconds(50));
+  EXPECT_GE(producer_->earliest(), clock_.time + kFreeze + std::chrono::microseconds(200));
+  EXPECT_LE(producer_->earliest(), clock_.time + kFreeze + milliseconds(4));
+  clock_.time += milliseconds(40);
+  (void)append(producer_->last_time() + milliseconds(20), 0);
+  (void)solver_->step(clock_);
+  EXPECT_GE(producer_->earliest(), clock_.time + kFreeze + milliseconds(37));
+  EXPECT_LE(producer_->earliest(), clock_.time + kFreeze + milliseconds(43));
+  pass(milliseconds(2500));
+  EXPECT_LE(producer_->earliest(), clock_.time + kFreeze + milliseconds(4)) << "at rest, later";
+}
+
 class ContinuedRingWithoutLimits : public ContinuedRing {
  protected:
   ContinuedRingWithoutLimits() : ContinuedRing(false) {}

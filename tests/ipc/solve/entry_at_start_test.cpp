@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "tests/ipc/solve/watched_stream.hpp"
 
@@ -32,6 +33,35 @@ TEST(Entry, BeginsAStreamWhoseFirstIntervalExceedsItsLimit) {
       if (limit > 0) {
         EXPECT_LE(live.peak(2), limit * (1 + 1e-6));
       }
+      EXPECT_EQ(live.verified(), "");
+    }
+  }
+}
+
+/// A replacement, or a stop, after the first waypoint of a start that has not been compared with
+/// the limits yet: it keeps the beginning of that curve.
+TEST(Entry, BeginsAStreamThatIsReplacedBeforeItsStartIsDecided) {
+  for (const bool in_one_step : {true, false}) {
+    for (const std::size_t waypoints : {std::size_t{0}, std::size_t{20}}) {
+      SCOPED_TRACE(::testing::Message() << waypoints << " new, in one step: " << in_one_step);
+      Watched live(limited(5));
+      for (int ms = 300; ms < 370; ms += 10) live.send(ms, 1e-3 * ms);  // 1 /s from the start
+      if (!in_one_step) live.step();
+      ASSERT_EQ(live.solver.summary().passed_over, 0U);
+      const double x = 0.345;
+      std::vector<Waypoint> plan;
+      for (std::size_t i = 0; i < waypoints; ++i) {
+        plan.push_back({.time = at(360 + 10 * static_cast<int>(i)), .position = {&x, 1}});
+      }
+      ASSERT_EQ(live.ring.writer.replace_from(at(345), plan, live.solved()),
+                AppendStatus::accepted);
+      live.drain();
+      EXPECT_EQ(live.solver.summary().consumed, 8 + waypoints);
+      live.run_to(1500);
+      live.end();
+      EXPECT_LE(live.peak(2, true), 5 * (1 + 1e-6));
+      EXPECT_EQ(live.collected.segments()[0].left, at(300));
+      EXPECT_NE(live.collected.segments()[0].kind, SegmentKind::spline);
       EXPECT_EQ(live.verified(), "");
     }
   }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <vector>
 
+#include "ipc/solve/pauses.hpp"
 #include "tests/fixtures/streams/live_stream.hpp"
 
 namespace splinecast::ipc {
@@ -104,6 +105,32 @@ TEST(LateCommit, IsNotCountedForATimelyCommitWhoseSolverDiesAfterIt) {
   live.clock.time += milliseconds(100);
   live.solver.step(live.clock);
   EXPECT_EQ(late_commits(live), 0U);
+}
+
+TEST(Pauses, AreRememberedForOneToTwoSeconds) {
+  const Time begin = std::chrono::hours(5);
+  Pauses pauses;
+  EXPECT_EQ(pauses.longest(begin), Time::zero());
+  pauses.note(begin, milliseconds(30));
+  pauses.note(begin + milliseconds(1), milliseconds(2));
+  for (const int ms : {1, 500, 999, 1000, 1500, 1999}) {
+    EXPECT_EQ(pauses.longest(begin + milliseconds(ms)), milliseconds(30)) << ms;
+  }
+  pauses.note(begin + milliseconds(1999), milliseconds(4));
+  EXPECT_EQ(pauses.longest(begin + milliseconds(2500)), milliseconds(4));
+  EXPECT_EQ(pauses.longest(begin + milliseconds(9000)), Time::zero());
+}
+
+TEST(Pauses, OfASolverAreOnTheBoard) {
+  Live live;
+  live.put_all(50, 800);
+  for (int i = 0; i < 50; ++i, live.clock.time += milliseconds(1)) live.solver.step(live.clock);
+  const auto longest = [&] { return live.solver.summary().longest_pause; };
+  EXPECT_LT(longest(), milliseconds(3));
+  live.clock.time += milliseconds(40);
+  live.put_all(810, 820);
+  EXPECT_GE(longest(), milliseconds(37));
+  EXPECT_LE(longest(), milliseconds(42));
 }
 
 }  // namespace
