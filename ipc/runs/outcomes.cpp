@@ -5,9 +5,15 @@
 #include "ipc/layout/knot_slots.hpp"
 
 namespace splinecast::ipc {
+namespace {
+
+/// Waypoints of which a solver keeps the item: a revision that is discarded looks at all of them.
+constexpr std::size_t kMostKept = 1U << 14;
+
+}  // namespace
 
 Outcomes::Outcomes(KnotBoardWriter& board, const KnotBoardReader& published)
-    : board_(&board), published_(&published), taken_(published.capacity()) {}
+    : board_(&board), published_(&published), taken_(std::min(published.capacity(), kMostKept)) {}
 
 void Outcomes::take_over(const Summary& summary) noexcept {
   known_from_ = newest_ = summary.knots;
@@ -160,11 +166,9 @@ void Outcomes::end(const RunProgress& now, const RunEnd& how) noexcept {
   if (!enters && (how.kind != EndKind::as_requested || now.is_on_line())) return;
   take_out(begin + now.unmet, begin + last, OutcomeKind::passed_over);
   if (now.unmet > last) return;
-  if (enters) {
-    (void)note_slowed(now, 0, how.rest);
-  } else {
-    meet(now, last, OutcomeWay::end);
-  }
+  // A curve that rested there before the end was requested may have come after the waypoint's time.
+  const Time own = taken(begin + last).time;
+  (void)note_slowed(now, 0, enters ? how.rest : std::max(own, how.rest));
 }
 
 bool Outcomes::note_slowed(const RunProgress& now, Word newer, Time time) noexcept {

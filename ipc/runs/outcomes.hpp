@@ -36,7 +36,7 @@ struct RunEnd {
 
 /// Records the outcomes of the items that a solver takes, unless a waypoint is on the spline at its
 /// own time: an append stores nothing more than without it. Keeps as many accepted waypoints as the
-/// board has knots; the outcome of an older one that is not final yet is lost.
+/// board has knots, at most 16,384; the outcome of an older one that is not final yet is lost.
 ///
 /// A solver that takes over knows no item of its predecessor: the outcomes of these are lost, but
 /// for the records. Allocates only when constructed; one thread uses it.

@@ -296,8 +296,7 @@ void StreamSolver::refuse(Word number, Refusal reason) noexcept {
   has_refused_ = true;
 }
 
-RunProgress StreamSolver::progress() const noexcept {
-  const CurveSummary curve = curve_.summary();
+RunProgress StreamSolver::progress_of(const CurveSummary& curve) noexcept {
   return {.course = curve.course,
           .knots = curve.run_knots,
           .met = curve.met,
@@ -312,8 +311,7 @@ void StreamSolver::note_in_force(Word number, Time t, OutcomeWay way) noexcept {
 
 /// Records what this revision, which takes the items from `first` on, has decided. Not of a law,
 /// whose runs have no waypoints of a ring.
-void StreamSolver::note_outcomes(Word first) noexcept {
-  const RunProgress now = progress();
+void StreamSolver::note_outcomes(const RunProgress& now, Word first) noexcept {
   outcomes_.advance(now);
   if (summary_.finished && summary_.end_item >= first) note_end(now);
   outcomes_.put(summary_);

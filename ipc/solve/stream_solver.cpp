@@ -256,7 +256,7 @@ bool StreamSolver::can_rest() const noexcept {
 /// Cuts the curve at t and begins a run there: from rest where the law holds, instead of what has
 /// settled after it.
 void StreamSolver::begin_run(Time t, const RunBegin& how) noexcept {
-  outcomes_.cut(progress(), t);
+  outcomes_.cut(progress_of(curve_.summary()), t);
   if (how.is_from_rest) settled_until_ = t;
   rests_ = rests_ || how.is_from_rest;
   curve_.begin_run(t, how);
@@ -360,8 +360,9 @@ bool StreamSolver::still_rests(const Clock& clock) noexcept {
 StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   summary_.changed_from = curve_.write();
   if (!board_->is_sound()) return {};
-  put_summary(curve_.summary(), summary_);
-  if (planner_ == nullptr) note_outcomes(summary_.consumed - consumed);
+  const CurveSummary curve = curve_.summary();
+  put_summary(curve, summary_);
+  if (planner_ == nullptr) note_outcomes(progress_of(curve), summary_.consumed - consumed);
   // The commit time of a recorded stream is not compared with anything.
   const bool is_free = !rests_ || still_rests(clock);
   summary_.committed = is_timed_ ? clock.now() : std::max(summary_.committed, clock.about_now());

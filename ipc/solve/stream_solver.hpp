@@ -154,9 +154,9 @@ class StreamSolver {
   void check_commit(Time now) noexcept;
   void store_settled(Time t) noexcept;
   [[nodiscard]] Time settled_by_commit() const noexcept;
-  [[nodiscard]] RunProgress progress() const noexcept;
+  [[nodiscard]] static RunProgress progress_of(const CurveSummary& curve) noexcept;
   void note_in_force(Word number, Time t, OutcomeWay way) noexcept;
-  void note_outcomes(Word first) noexcept;
+  void note_outcomes(const RunProgress& now, Word first) noexcept;
   void note_end(const RunProgress& now) noexcept;
   [[nodiscard]] bool still_rests(const Clock& clock) noexcept;
   StepResult publish(const Clock& clock, Word consumed) noexcept;
