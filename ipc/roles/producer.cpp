@@ -149,7 +149,7 @@ struct Producer::Impl {
   }
 
   /// What a producer adds to the earliest time of a replacement, so that the solver finds it in
-  /// time: the solver's longest pause. One at rest commits nothing, and wakes at once.
+  /// time: the solver's longest pause. At rest a solver commits nothing and wakes at once.
   [[nodiscard]] Time longest_pause() const noexcept {
     constexpr Time kLastSecond = std::chrono::seconds(1);
     ipc::Summary summary;

@@ -10,6 +10,10 @@ namespace {
 /// Waypoints of which a solver keeps the item: a revision that is discarded looks at all of them.
 constexpr std::size_t kMostKept = 1U << 14;
 
+OutcomeRecord record_in_force(Word item, OutcomeWay way, Time time) noexcept {
+  return {.item = item, .kind = OutcomeKind::in_force, .way = way, .time = time, .first = item};
+}
+
 }  // namespace
 
 Outcomes::Outcomes(KnotBoardWriter& board, const KnotBoardReader& published)
@@ -48,12 +52,7 @@ Word Outcomes::oldest_kept() const noexcept {
 void Outcomes::meet(const RunProgress& run, Word knot, OutcomeWay way) noexcept {
   const Word index = index_of(run, knot);
   if (index < oldest_kept()) return;
-  const Taken& waypoint = taken(index);
-  record({.item = waypoint.item,
-          .kind = OutcomeKind::in_force,
-          .way = way,
-          .time = waypoint.time,
-          .first = waypoint.item});
+  record(record_in_force(taken(index).item, way, taken(index).time));
 }
 
 /// Records that the accepted waypoints `first` to `end` - 1 are not in force. Of those that are not
@@ -148,11 +147,7 @@ void Outcomes::cut(const RunProgress& now, Time t) noexcept {
 }
 
 void Outcomes::end(const RunProgress& now, const RunEnd& how) noexcept {
-  record({.item = how.item,
-          .kind = OutcomeKind::in_force,
-          .way = OutcomeWay::end,
-          .time = how.rest,
-          .first = how.item});
+  record(record_in_force(how.item, OutcomeWay::end, how.rest));
   run_ = now;
   run_.course = Course::on_target;  // nothing is undecided
   if (now.knots == 0) return;
@@ -177,11 +172,7 @@ bool Outcomes::note_slowed(const RunProgress& now, Word newer, Time time) noexce
   if (index < oldest_kept()) return false;
   const Taken& waypoint = taken(index);
   if (newer > 0 && time == waypoint.time) return false;
-  record({.item = waypoint.item,
-          .kind = OutcomeKind::in_force,
-          .way = OutcomeWay::end,
-          .time = time,
-          .first = waypoint.item});
+  record(record_in_force(waypoint.item, OutcomeWay::end, time));
   return true;
 }
 
