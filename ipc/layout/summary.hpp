@@ -23,8 +23,9 @@ enum class Course : std::uint8_t {
   waiting = 1,    ///< it ends in a stop away from the target: no entry has been found
   entering = 2,   ///< an entry ends at a waypoint of the run, and the target follows
   beyond = 3,     ///< an entry ends beyond the newest waypoint, and a stop follows
+  starting = 4,   ///< it rests at the first waypoint: the start is not decided yet
 };
-inline constexpr int kCourses = 4;
+inline constexpr int kCourses = 5;
 
 /// How a finished curve ends.
 enum class EndKind : std::uint8_t {
@@ -151,7 +152,8 @@ inline constexpr std::tuple kFurtherRows{
     MemberRow<&Summary::course>{
         "course", FieldWriter::owner,
         "0 on the target, 1 waiting for an entry,\n"
-        "2 an entry ends at a waypoint, 3 an entry ends beyond the newest waypoint"},
+        "2 an entry ends at a waypoint, 3 an entry ends beyond the newest waypoint,\n"
+        "4 at rest at the first waypoint: the start is not decided yet"},
     MemberRow<&Summary::met>{"met", FieldWriter::owner,
                              "number of waypoints of the run before the piece of the target\n"
                              "that ends at the newest knot"},

@@ -10,10 +10,6 @@ namespace {
 /// Waypoints of which a solver keeps the item: a revision that is discarded looks at all of them.
 constexpr std::size_t kMostKept = 1U << 14;
 
-OutcomeRecord record_in_force(Word item, OutcomeWay way, Time time) noexcept {
-  return {.item = item, .kind = OutcomeKind::in_force, .way = way, .time = time, .first = item};
-}
-
 }  // namespace
 
 Outcomes::Outcomes(KnotBoardWriter& board, const KnotBoardReader& published)
@@ -48,11 +44,15 @@ Word Outcomes::oldest_kept() const noexcept {
   return std::max(known_from_, newest_ - std::min(newest_, size));
 }
 
-/// Waypoint `knot` of the run is in force at its own time.
-void Outcomes::meet(const RunProgress& run, Word knot, OutcomeWay way) noexcept {
+void Outcomes::note_in_force(Word item, OutcomeWay way, Time time) noexcept {
+  record({.item = item, .kind = OutcomeKind::in_force, .way = way, .time = time, .first = item});
+}
+
+/// An entry ends at waypoint `knot` of the run, at its own time.
+void Outcomes::meet(const RunProgress& run, Word knot) noexcept {
   const Word index = index_of(run, knot);
   if (index < oldest_kept()) return;
-  record(record_in_force(taken(index).item, way, taken(index).time));
+  note_in_force(taken(index).item, OutcomeWay::entry, taken(index).time);
 }
 
 /// Records that the accepted waypoints `first` to `end` - 1 are not in force. Of those that are not
@@ -71,12 +71,12 @@ void Outcomes::advance(const RunProgress& now) noexcept {
   const Word begin = index_of(now, 0);
   if (!run_.is_on_line() && now.unmet > run_.unmet) {
     take_out(begin + run_.unmet, begin + now.unmet - 1, OutcomeKind::passed_over);
-    meet(now, now.unmet - 1, OutcomeWay::entry);
+    meet(now, now.unmet - 1);
   }
   const bool was_entering = run_.course == Course::entering && run_.met == now.met;
   if (now.course == Course::entering && !was_entering) {
     take_out(begin + now.unmet, begin + now.met, OutcomeKind::passed_over);
-    meet(now, now.met, OutcomeWay::entry);
+    meet(now, now.met);
   }
   run_ = now;
 }
@@ -92,20 +92,15 @@ Word Outcomes::end_until(Word first, Word end, Time t) const noexcept {
 /// Withdraws the waypoints before `end` that are in force after t.
 void Outcomes::withdraw(Word end, Time t) noexcept {
   const Word oldest = oldest_kept();
-  Word i = std::min(end, accepted_);
-  const auto is_later = [&](Word index) {
-    return index > oldest && taken(index - 1).out == kNoItem && taken(index - 1).time > t;
-  };
-  while (i > oldest) {
-    if (taken(i - 1).out != kNoItem) {
-      --i;
-      continue;
-    }
-    if (!is_later(i)) return;
-    const Word last = i;
-    while (is_later(i)) --i;
+  Word last = std::min(end, accepted_);  // those from i to last - 1 are in force
+  for (Word i = last; i > oldest; --i) {
+    const Taken& waypoint = taken(i - 1);
+    if (waypoint.out == kNoItem && waypoint.time > t) continue;
     take_out(i, last, OutcomeKind::withdrawn);
+    if (waypoint.out == kNoItem) return;
+    last = i - 1;
   }
+  take_out(oldest, last, OutcomeKind::withdrawn);
   // All that are kept are later, and so may be older ones.
   if (oldest > 0 && oldest < accepted_) board_->lose_outcomes(taken(oldest).item);
 }
@@ -135,7 +130,7 @@ void Outcomes::cut(const RunProgress& now, Time t) noexcept {
   const Word goal = begin + now.goal;
   if (now.goal > now.decided() && end_until(goal - 1, goal, t) == goal) {
     take_out(open, goal - 1, OutcomeKind::passed_over);
-    meet(now, now.goal - 1, OutcomeWay::entry);
+    meet(now, now.goal - 1);
     open = goal;
   }
   const Word over = end_until(open, accepted_, t);
@@ -147,13 +142,13 @@ void Outcomes::cut(const RunProgress& now, Time t) noexcept {
 }
 
 void Outcomes::end(const RunProgress& now, const RunEnd& how) noexcept {
-  record(record_in_force(how.item, OutcomeWay::end, how.rest));
+  note_in_force(how.item, OutcomeWay::end, how.rest);
   run_ = now;
   run_.course = Course::on_target;  // nothing is undecided
   if (now.knots == 0) return;
   const Word begin = index_of(now, 0);
   const Word last = now.knots - 1;
-  if (how.kind == EndKind::slowed) (void)note_slowed(now, 0, how.rest);
+  if (how.kind == EndKind::slowed) (void)note_at_end(now, 0, how.rest);
   if (how.kind == EndKind::in_stop && !now.is_on_line()) {
     take_out(begin + now.unmet, accepted_, OutcomeKind::passed_over);
   }
@@ -163,16 +158,16 @@ void Outcomes::end(const RunProgress& now, const RunEnd& how) noexcept {
   if (now.unmet > last) return;
   // A curve that rested there before the end was requested may have come after the waypoint's time.
   const Time own = taken(begin + last).time;
-  (void)note_slowed(now, 0, enters ? how.rest : std::max(own, how.rest));
+  (void)note_at_end(now, 0, enters ? how.rest : std::max(own, how.rest));
 }
 
-bool Outcomes::note_slowed(const RunProgress& now, Word newer, Time time) noexcept {
+bool Outcomes::note_at_end(const RunProgress& now, Word newer, Time time) noexcept {
   if (newer >= now.knots) return false;
   const Word index = index_of(now, now.knots - 1 - newer);
   if (index < oldest_kept()) return false;
   const Taken& waypoint = taken(index);
   if (newer > 0 && time == waypoint.time) return false;
-  record(record_in_force(waypoint.item, OutcomeWay::end, time));
+  note_in_force(waypoint.item, OutcomeWay::end, time);
   return true;
 }
 

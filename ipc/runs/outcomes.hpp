@@ -38,8 +38,8 @@ struct RunEnd {
 /// own time: an append stores nothing more than without it. Keeps as many accepted waypoints as the
 /// board has knots, at most 16,384; the outcome of an older one that is not final yet is lost.
 ///
-/// A solver that takes over knows no item of its predecessor: the outcomes of these are lost, but
-/// for the records. Allocates only when constructed; one thread uses it.
+/// A solver that takes over knows no item of its predecessor: the outcomes of these are lost,
+/// except those with a record. Allocates only when constructed; one thread uses it.
 class Outcomes {
  public:
   /// `board` and `published` are the two sides of one board; both outlive this.
@@ -56,6 +56,7 @@ class Outcomes {
 
   /// Records an outcome of which the solver itself knows.
   void record(const OutcomeRecord& record) noexcept { board_->write_outcome(count_++, record); }
+  void note_in_force(Word item, OutcomeWay way, Time time) noexcept;
 
   /// The run has come this far. O(1).
   void advance(const RunProgress& now) noexcept;
@@ -69,7 +70,7 @@ class Outcomes {
 
   /// The curve that ends is at the waypoint `newer` places before the newest one at this time.
   /// Returns false if that is the waypoint's own time, or if the waypoint is not kept.
-  bool note_slowed(const RunProgress& now, Word newer, Time time) noexcept;
+  bool note_at_end(const RunProgress& now, Word newer, Time time) noexcept;
 
   /// Sets the summary's part.
   void put(Summary& summary) const noexcept;
@@ -90,7 +91,7 @@ class Outcomes {
   [[nodiscard]] Word index_of(const RunProgress& run, Word knot) const noexcept {
     return accepted_ - run.knots + knot;
   }
-  void meet(const RunProgress& run, Word knot, OutcomeWay way) noexcept;
+  void meet(const RunProgress& run, Word knot) noexcept;
   void take_out(Word first, Word end, OutcomeKind kind) noexcept;
   [[nodiscard]] Word end_until(Word first, Word end, Time t) const noexcept;
   void withdraw(Word end, Time t) noexcept;

@@ -33,39 +33,67 @@ bool PublishedCurve::needs_entry() const noexcept {
 
 /// Whether the stream starts at rest at its first waypoint and the start can still be changed.
 bool PublishedCurve::is_start_open() const noexcept {
-  return course_ == Course::on_target && !window_.is_later_run() &&
-         window_.options().held_before_start &&
+  const bool has_entered = course_ != Course::on_target && course_ != Course::starting;
+  return !has_entered && !window_.is_later_run() && window_.options().held_before_start &&
          window_.options().start.kind == ConditionKind::halt && window_.knots() >= 2 &&
          window_.oldest_segment() == 0 && window_.frozen_knots() == 0;
 }
 
-/// Lets a stream start by an entry from rest if its first interval exceeds the limits: the given
-/// ones, or those that the later motion shows.
-void PublishedCurve::check_start() noexcept {
-  const std::size_t knots = window_.knots();
-  find_shown();
-  if (entries_.is_live) shown_.look(window_.options().stop_time);
-  if (search_.keeps_start(window_, entry_rules())) return;
+/// Lets the published curve rest at the first waypoint.
+void PublishedCurve::rest_at_start() noexcept {
   const core::Knot first = window_.knot(0);
   constexpr std::array<double, kMaxDimensions> kRest{};
   const auto zeros = std::span(kRest).first(window_.dimensions());
-  const Instant rest{first.time, first.position, zeros, zeros};
-  course_ = Course::waiting;
-  met_ = placed_ = knots;
+  course_ = Course::starting;
+  met_ = placed_ = window_.knots();
   unmet_ = 1;
   passed_lowest_ = passed_written_ = passed_committed_ = 0;
-  set_origin(1, rest);
-  note_met();
+  set_origin(1, {first.time, first.position, zeros, zeros});
   note_change(first.time);
+}
+
+/// Ends that rest before it has settled: the curve follows its target from the start.
+void PublishedCurve::start_on_target() noexcept {
+  course_ = Course::on_target;
+  met_ = placed_ = unmet_ = kept_ = open_ = 0;
+  met_number_ = 1;
+  origin_ = {};
+  note_change(window_.time(0));
+}
+
+/// Compares the start with the limits. While it exceeds one, the curve rests at the first waypoint,
+/// so that a solver that stops before the decision leaves no start that nothing has compared. The
+/// decision, which compares with the limits that the later motion shows, too, lets the stream start
+/// by an entry from rest.
+void PublishedCurve::check_start(Time settled, bool is_decision) noexcept {
+  core::EntryRules rules = entry_rules();
+  if (is_decision) {
+    find_shown();
+    if (entries_.is_live) shown_.look(window_.options().stop_time);
+  } else {
+    rules.shown = nullptr;
+  }
+  const bool keeps_limits = search_.keeps_start(window_, rules);
+  if (course_ == Course::on_target) {
+    if (keeps_limits) return;
+    rest_at_start();
+  } else if (keeps_limits && settled <= window_.time(0)) {
+    return start_on_target();
+  }
+  if (!is_decision) return;
+  course_ = Course::waiting;
+  has_changes_ = true;
+  note_met();
   search_.restart(1);
   is_searching_ = true;
 }
 
-bool PublishedCurve::decide_start(Time t) noexcept {
+bool PublishedCurve::decide_start(Time t, Time settled, Time keep, int& tries) noexcept {
   const bool is_open = has_limits_ && entries_.is_live && is_start_open();
   if (is_damaged_ || !is_open || t <= window_.time(0)) return false;
-  check_start();
-  return needs_entry();
+  check_start(settled, true);
+  search_entry(settled, keep, true, tries);
+  return has_changes_;
 }
 
 /// Finds the state at which an entry begins: the origin if that has not settled, else the state of
@@ -134,12 +162,19 @@ core::EntryRules PublishedCurve::entry_rules() const noexcept {
 
 void PublishedCurve::look_for_entry(Time settled, Time keep, bool is_last, int& tries) noexcept {
   if (is_damaged_ || ending_ != EndKind::none) return;
-  // Checks the start when settle + 2 waypoints are known or, on a live stream, shortly before the
+  // Decides the start when settle + 2 waypoints are known or, on a live stream, shortly before the
   // start settles.
-  if (is_start_open() && (window_.knots() == window_.options().settle + 2 ||
-                          (is_last && start_decision() <= settled))) {
-    check_start();
+  if (is_start_open()) {
+    const std::size_t decisive = window_.options().settle + 2;
+    const bool is_decision =
+        window_.knots() == decisive || (is_last && start_decision() <= settled);
+    const bool may_stop_before = has_limits_ && entries_.is_live && window_.knots() < decisive;
+    if (is_decision || may_stop_before) check_start(settled, is_decision);
   }
+  search_entry(settled, keep, is_last, tries);
+}
+
+void PublishedCurve::search_entry(Time settled, Time keep, bool is_last, int& tries) noexcept {
   if (!needs_entry() || window_.knots() <= unmet_ || tries <= 0) return;
   if (!has_room_to_enter(keep) || !prepare(settled)) return;
   core::EntryRules rules = entry_rules();

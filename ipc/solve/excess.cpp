@@ -41,13 +41,14 @@ std::size_t PublishedCurve::first_open(Time settled) const noexcept {
 }
 
 /// The first segment to be compared when a waypoint is appended. Excludes the first kStartFades
-/// segments of a live stream that starts at rest: check_start() compares them with the limits. With
-/// Beyond::enter they are compared after that.
+/// segments of a stream that starts at rest: check_start() compares them with the limits. On a live
+/// stream they are compared after that, unless an entry from rest may still pass over them.
 std::size_t PublishedCurve::first_compared(Time settled) const noexcept {
-  const bool starts_at_rest =
-      entries_.keeps_limits ? awaits_start_check()
-                            : !window_.is_later_run() && window_.options().held_before_start &&
-                                  window_.options().start.kind == ConditionKind::halt;
+  const bool is_at_rest = !window_.is_later_run() && window_.options().held_before_start &&
+                          window_.options().start.kind == ConditionKind::halt;
+  const bool is_undecided = awaits_start_check() || (window_.knots() < 2 && !entries_.keeps_limits);
+  const bool may_pass_over = is_undecided || (!is_on_line() && origin_.number == 1);
+  const bool starts_at_rest = is_at_rest && (!entries_.is_live || may_pass_over);
   return std::max(
       {first_open(settled), trial_.oldest_segment(), starts_at_rest ? core::kStartFades : 0});
 }
@@ -202,7 +203,7 @@ Followed PublishedCurve::leave(const Waypoint& waypoint, Word item, Time settled
   shown_.look(window_.options().stop_time);
   if (awaits_start_check() && !search_.keeps_start(window_, entry_rules())) {
     append(waypoint, item);
-    check_start();
+    check_start(settled, true);
     return Followed::taken;
   }
   if (leaving_item_ != item) {

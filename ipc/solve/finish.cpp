@@ -94,7 +94,7 @@ bool PublishedCurve::finish(const Condition& end, Time settled, Time keep, int& 
     ending_ = EndKind::as_requested;
     return true;
   }
-  if (is_start_open()) check_start();
+  if (is_start_open()) check_start(settled, true);
   if (!is_on_line() && end_search_ == EndSearch::none && has_room_to_enter(keep) &&
       prepare(settled)) {
     enter_before_end();

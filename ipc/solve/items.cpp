@@ -173,7 +173,7 @@ void StreamSolver::take_replacement(Word number) noexcept {
   const Word followers = may_follow ? std::min<Word>(item_.count, board_->capacity() / 2) : 0;
   batch_limit_ = is_stop(item_) ? 0 : batch_limit_ + followers;
   if (!has_begun) return;
-  note_in_force(number, t, is_stop(item_) ? OutcomeWay::stop : OutcomeWay::entry);
+  outcomes_.note_in_force(number, is_stop(item_) ? OutcomeWay::stop : OutcomeWay::entry, t);
   // A stop after another one changes nothing.
   if (is_stop(item_) && curve_.is_stop() && t >= curve_.newest_time()) return;
   const RunBegin how{.blend = std::clamp(item_.blend, Time::zero(), limits_.max_interval),
@@ -257,7 +257,7 @@ void StreamSolver::take_start_state(Word number) noexcept {
   // One that comes late begins as early as possible.
   const Time begin = live_ ? std::max(state.time, settled_until_) : state.time;
   ++summary_.controls;
-  note_in_force(number, begin, OutcomeWay::entry);
+  outcomes_.note_in_force(number, OutcomeWay::entry, begin);
   curve_.begin({.time = begin,
                 .position = state.position,
                 .velocity = state.velocity,
@@ -304,11 +304,6 @@ RunProgress StreamSolver::progress_of(const CurveSummary& curve) noexcept {
           .goal = curve.goal};
 }
 
-void StreamSolver::note_in_force(Word number, Time t, OutcomeWay way) noexcept {
-  outcomes_.record(
-      {.item = number, .kind = OutcomeKind::in_force, .way = way, .time = t, .first = number});
-}
-
 /// Records what this revision, which takes the items from `first` on, has decided. Not of a law,
 /// whose runs have no waypoints of a ring.
 void StreamSolver::note_outcomes(const RunProgress& now, Word first) noexcept {
@@ -324,7 +319,7 @@ void StreamSolver::note_end(const RunProgress& now) noexcept {
   if (kind != EndKind::slowed) return;
   Word newer = 1;
   while (newer < kOutcomesKept &&
-         outcomes_.note_slowed(now, newer, published_->time_hint(summary_.newest - newer))) {
+         outcomes_.note_at_end(now, newer, published_->time_hint(summary_.newest - newer))) {
     ++newer;
   }
 }

@@ -249,6 +249,7 @@ void PublishedCurve::append(const Waypoint& waypoint, Word item) noexcept {
 
 /// Waypoints that the open entry passes over.
 std::size_t PublishedCurve::passed_over() const noexcept {
+  if (course_ == Course::starting) return 0;  // not decided yet
   const bool ends_at_newest = ending_ == EndKind::as_requested || ending_ == EndKind::entered;
   const bool has_met = is_on_line() || ends_at_newest;
   const std::size_t end = has_met ? met_ : window_.knots();

@@ -65,13 +65,11 @@ class PublishedCurve {
   /// or of the state that the run was entered from; empty if there is neither.
   [[nodiscard]] std::span<const double> newest_position() const noexcept;
 
-  /// Whether anything has been changed since the last commit.
+  /// Whether anything has been changed since the last commit, and whether there is a curve.
   [[nodiscard]] bool has_changes() const noexcept { return has_changes_; }
-
-  /// Whether there is a curve.
   [[nodiscard]] bool has_begun() const noexcept { return newest_ > 0 || has_changes_; }
 
-  /// The time of the newest knot of the run, or of the state that the run was entered from. The
+  /// The time of the newest knot of the run, or of the state that the run was entered from: the
   /// next waypoint must be after it. Requires a run.
   [[nodiscard]] Time newest_time() const noexcept;
 
@@ -132,9 +130,8 @@ class PublishedCurve {
     return has_limits_ && window_.knots() > 0 ? find_excess(waypoint, settled) : std::nullopt;
   }
 
-  /// Where the stop at the end of the committed curve, or the one in which the curve has been
-  /// ended, exceeds a limit or passes a bound; nothing if it keeps them. Requires a curve that has
-  /// begun.
+  /// Where the stop in which the committed curve ends, or has been ended, exceeds a limit or passes
+  /// a bound; nothing if it keeps them. Requires a curve that has begun.
   [[nodiscard]] std::optional<LimitExcess> stop_excess() noexcept;
 
   /// Appends a waypoint so that the curve keeps its limits (Beyond::enter). Where the spline with
@@ -167,15 +164,14 @@ class PublishedCurve {
   }
 
   /// Whether the curve waits for newer waypoints to enter, although the next item is a replacement
-  /// after all waypoints of the run, from time t on: no other one follows. Not on a live stream,
-  /// which enters without waiting.
+  /// after all waypoints of the run, from time t on. Not on a live stream: it does not wait.
   [[nodiscard]] bool may_enter_before(Time t) const noexcept {
     return needs_entry() && is_planning() && !entries_.is_live && window_.knots() > unmet_ &&
            t >= newest_time();
   }
 
-  /// Decides a start with limits that a cut at t would keep. Returns whether it needs an entry.
-  [[nodiscard]] bool decide_start(Time t) noexcept;
+  /// Decides a start with limits that a cut at t would keep. Returns whether the curve has changes.
+  [[nodiscard]] bool decide_start(Time t, Time settled, Time keep, int& tries) noexcept;
 
   /// Searches for an entry onto the waypoints that are known, and makes it part of the curve.
   /// Requires may_enter_before(). So also a few waypoints between two stops are met.
@@ -239,7 +235,9 @@ class PublishedCurve {
 
   // Entries: entries.cpp.
   [[nodiscard]] bool is_start_open() const noexcept;
-  void check_start() noexcept;
+  void rest_at_start() noexcept;
+  void start_on_target() noexcept;
+  void check_start(Time settled, bool is_decision) noexcept;
   void restart_search() noexcept;
   void find_shown() noexcept;
   [[nodiscard]] bool needs_entry() const noexcept;
@@ -252,6 +250,7 @@ class PublishedCurve {
   }
   [[nodiscard]] core::EntryRules entry_rules() const noexcept;
   void look_for_entry(Time settled, Time keep, bool is_last, int& tries) noexcept;
+  void search_entry(Time settled, Time keep, bool is_last, int& tries) noexcept;
   void enter() noexcept;
   void enter_before_end() noexcept;
 

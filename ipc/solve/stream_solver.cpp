@@ -290,7 +290,7 @@ bool StreamSolver::enters_before(const RingItem& item) noexcept {
   if (curve_.may_enter_before(item.time)) {
     if (batch_ > 0) return true;
     curve_.enter_before_cut(settled_until_, keep_);
-  } else if (!curve_.decide_start(time_of_cut(item.time))) {
+  } else if (!curve_.decide_start(time_of_cut(item.time), settled_until_, keep_, tries_)) {
     return false;
   }
   has_entry_only_ = batch_ == 0 && curve_.has_changes();

@@ -155,7 +155,6 @@ class StreamSolver {
   void store_settled(Time t) noexcept;
   [[nodiscard]] Time settled_by_commit() const noexcept;
   [[nodiscard]] static RunProgress progress_of(const CurveSummary& curve) noexcept;
-  void note_in_force(Word number, Time t, OutcomeWay way) noexcept;
   void note_outcomes(const RunProgress& now, Word first) noexcept;
   void note_end(const RunProgress& now) noexcept;
   [[nodiscard]] bool still_rests(const Clock& clock) noexcept;

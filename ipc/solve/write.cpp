@@ -17,11 +17,16 @@ constexpr std::array<double, kMaxDimensions> kZeros{};
 /// While a run has at most this many knots, an append may change the rows of all of them.
 constexpr std::size_t kFirstKnots = 4;
 
+/// Whether the curve of an origin is only the stop from there.
+bool only_stops(Course course) noexcept {
+  return course == Course::waiting || course == Course::starting;
+}
+
 }  // namespace
 
 /// Writes the knot of the origin: an entry begins there or, in a run without an entry, a stop.
 void PublishedCurve::write_origin() noexcept {
-  const bool enters = course_ != Course::waiting || ending_ == EndKind::entered;
+  const bool enters = !only_stops(course_) || ending_ == EndKind::entered;
   const auto zeros = std::span(kZeros).first(published_->smooths() ? window_.dimensions() : 0);
   std::ranges::copy(origin_state_.acceleration(), values_.begin());
   if (!enters) core::align_rotations(window_.kinds(), origin_state_.velocity(), values_);
@@ -206,7 +211,7 @@ void PublishedCurve::write_knot(std::size_t i) noexcept {
 /// Writes the changes of a curve that does not end on the target, and the stop at its end.
 void PublishedCurve::write_off_line(bool writes_origin) noexcept {
   if (is_entry_new_) write_beyond();
-  if (writes_origin && course_ == Course::waiting) {
+  if (writes_origin && only_stops(course_)) {
     newest_ = origin_.number;
     stop_ = core::build_stop_within(window_.stop_rules(), origin_state(), segment_);
     end_ = origin_.time + stop_;

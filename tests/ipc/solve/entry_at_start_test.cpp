@@ -67,6 +67,68 @@ TEST(Entry, BeginsAStreamThatIsReplacedBeforeItsStartIsDecided) {
   }
 }
 
+/// The solver that published the first waypoints takes no further step before the start.
+TEST(Entry, IsNotNeededToStayWithinTheLimitIfTheSolverDiesBeforeTheStartIsDecided) {
+  for (const bool takes_over : {true, false}) {
+    for (const int waypoints : {2, 3, 7}) {
+      SCOPED_TRACE(::testing::Message() << waypoints << " waypoints, takes over: " << takes_over);
+      Watched live(limited(5));
+      for (int i = 0; i < waypoints; ++i) live.send(300 + 10 * i, 5e-3 * i);  // 0.5 /s
+      live.step();
+      EXPECT_EQ(live.course(), Course::starting);
+      EXPECT_EQ(live.solver.summary().passed_over, 0U);
+      for (int ms = 0; ms <= 1000; ++ms) ASSERT_EQ(live.position_at(at(ms)), 0) << ms;
+      live.clock.time = at(330);  // the start has settled
+      if (takes_over) live.replace_solver();
+      live.step();
+      EXPECT_EQ(live.position_at(live.clock.time), 0);
+      for (int ms = 300 + 10 * waypoints; ms <= 1500; ms += 10) {
+        live.run_to(std::max(ms - 50, 330));
+        live.send(ms, 5e-4 * (ms - 300));
+      }
+      live.end();
+      EXPECT_LE(live.peak(2, true), 5 * (1 + 1e-6));
+      EXPECT_GT(live.met(), 50U);
+      EXPECT_EQ(live.verified(), "");
+    }
+  }
+}
+
+/// A start that exceeds its limit with two waypoints, but not with more of them.
+TEST(Entry, IsNotNeededIfTheStartIsWithinItsLimitOnceMoreWaypointsAreKnown) {
+  for (const bool takes_over : {true, false}) {
+    for (const int at_once : {1, 3}) {
+      SCOPED_TRACE(::testing::Message() << at_once << " in one step, takes over: " << takes_over);
+      Watched live(limited(30), takes_over);
+      Watched together(limited(30));
+      const auto send = [](Watched& to, int i) { to.send(300 + 10 * i, 1e-3 * i * i); };  // 20 /s²
+      int starts = 0;
+      for (int i = 0; i < 30; ++i) {
+        send(live, i);
+        send(together, i);
+        if ((i + 1) % at_once == 0) live.step();
+        starts += live.course() == Course::starting ? 1 : 0;
+      }
+      EXPECT_EQ(starts, at_once == 1 ? 1 : 0);
+      together.step();
+      for (Watched* stream : {&live, &together}) {
+        stream->run_to(600);
+        stream->end();
+        EXPECT_EQ(stream->verified(), "");
+        EXPECT_EQ(stream->solver.summary().passed_over, 0U);
+        EXPECT_EQ(stream->collected.segments()[0].kind, SegmentKind::spline);
+      }
+      const auto a = live.collected.segments();
+      const auto b = together.collected.segments();
+      ASSERT_EQ(a.size(), b.size());
+      for (std::size_t i = 0; i < 20; ++i) {
+        ASSERT_EQ(a[i].left, b[i].left) << i;
+        ASSERT_EQ(a[i].coefficients, b[i].coefficients) << i;
+      }
+    }
+  }
+}
+
 TEST(Entry, IsNotNeededIfTheStartIsWithinItsLimit) {
   Watched live(limited(5));
   for (int ms = 100; ms <= 1500; ms += 10) {

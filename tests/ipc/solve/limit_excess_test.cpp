@@ -121,6 +121,37 @@ TEST(LimitExcess, IsNotReportedForAMotionWithinItsLimits) {
   EXPECT_EQ(live.solver.summary().passed_over, 0U);
 }
 
+/// Waypoints that come so late that the start has settled when the second or third one comes.
+TEST(LimitExcess, OfTheFirstIntervalsIsReportedOrRefused) {
+  for (const Beyond beyond : {Beyond::report, Beyond::refuse}) {
+    for (int steps_at = 1; steps_at <= 4; ++steps_at) {
+      for (int lead = 12; lead <= 40; lead += 2) {
+        SCOPED_TRACE(::testing::Message() << to_string(beyond) << ", waypoint " << steps_at << ", "
+                                          << lead << " ms ahead");
+        Stepping live(beyond);
+        for (int i = 0; i < 60; ++i) {
+          const int ms = 50 + 10 * i;
+          const Time next = instant(ms - lead);
+          for (; live.clock.time < next; live.clock.time += milliseconds(1)) live.drain();
+          const double position = i >= steps_at ? 0.005 : 0;
+          ASSERT_EQ(live.ring.writer.append({.time = instant(ms), .position = {&position, 1}},
+                                            live.solved()),
+                    AppendStatus::accepted);
+          live.drain();
+        }
+        double peak = 0;
+        for (Time t = instant(0); t < instant(500); t += milliseconds(1)) {
+          EXPECT_TRUE(has_values(live.sampler.preview(t, live.state.ref())));
+          peak = std::max(peak, std::abs(live.state.acceleration()[0]));
+        }
+        const bool keeps_limits = peak <= 4 * (1 + 1e-6);
+        EXPECT_TRUE(keeps_limits || beyond == Beyond::report) << peak;
+        EXPECT_TRUE(keeps_limits || live.solver.summary().exceeding > 0) << peak;
+      }
+    }
+  }
+}
+
 TEST(LimitExcess, IsKeptOnlyIfItIsAmongTheLastOnes) {
   testing::MemoryBoard board(1, 64);
   Summary summary;

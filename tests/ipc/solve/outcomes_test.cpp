@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "ipc/layout/knot_slots.hpp"
@@ -254,6 +258,46 @@ TEST(ItemOutcomes, OlderThanWhatIsKeptAreForgotten) {
   const Word newest = live.last() - 1;
   EXPECT_EQ(live.of(newest).kind, OutcomeKind::in_force);
   EXPECT_EQ(live.of(newest - 20).kind, OutcomeKind::in_force);
+}
+
+/// Each plan is withdrawn by the next one before its waypoint: its replacement is in force, and the
+/// waypoint never. A thread reads the newest outcomes while the solver overwrites their records.
+TEST(ItemOutcomes, AreKnownOrForgottenWhileTheirRecordsAreOverwritten) {
+  constexpr int kPlans = 3000;
+  Asked live;
+  live.send_all(50, 100, 40);
+  const Word first = live.last() + 1;
+  std::atomic<Word> end = first;  // the outcomes of the items before this one are known
+  std::atomic<bool> is_over = false;
+  std::array<std::size_t, kOutcomeKinds> kinds{};
+  std::size_t guesses = 0;
+  std::thread reader([&] {
+    while (!is_over) {
+      const Word known = end;
+      for (Word item = known - std::min<Word>(known - first, 300); item < known; ++item) {
+        const ItemOutcome found = live.of(item);
+        ++kinds[static_cast<std::size_t>(found.kind)];
+        const bool is_plan = (item - first) % 2 == 0;
+        const bool is_known =
+            is_plan ? found.kind == OutcomeKind::in_force : found.kind == OutcomeKind::withdrawn;
+        const bool is_right = is_known && (!is_plan || found.way == OutcomeWay::entry);
+        guesses += is_right || found.kind == OutcomeKind::forgotten ? 0U : 1U;
+      }
+    }
+  });
+  for (int i = 0; i < kPlans; ++i) {
+    const int ms = 120 + 10 * i;
+    live.clock.time = at(ms - 20);
+    live.replace_by(ms, {ms + 30});
+    live.step();
+    end = live.last() - 1;
+  }
+  is_over = true;
+  reader.join();
+  EXPECT_EQ(guesses, 0U);
+  EXPECT_GT(kinds[static_cast<std::size_t>(OutcomeKind::in_force)], 0U);
+  EXPECT_GT(kinds[static_cast<std::size_t>(OutcomeKind::withdrawn)], 0U);
+  EXPECT_GT(kinds[static_cast<std::size_t>(OutcomeKind::forgotten)], 0U);
 }
 
 TEST(ItemOutcomes, AreThoseOfTheCommittedRevision) {
