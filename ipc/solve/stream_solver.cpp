@@ -120,7 +120,8 @@ StepResult StreamSolver::step(const Clock& clock) noexcept {
   for (int i = 0; i < kMostTries; ++i) {
     const StepResult result = make_revision(clock, now);
     const bool is_sound = board_->is_sound();
-    if (is_sound && !has_entry_only_) return result;
+    // On a live stream the replacement after an entry is taken in the next step, which is due.
+    if (is_sound && (live_ || !entry_before_)) return result;
     if (!is_sound) suspect_items();
     if (is_damaged()) return {.damaged = true};
   }
@@ -160,8 +161,8 @@ void StreamSolver::take_back(Word misses) noexcept {
 /// the replacement is taken without it.
 void StreamSolver::suspect_items() noexcept {
   suspected_ = std::max(suspected_, summary_.consumed);
-  if (has_entry_only_) {
-    unsound_entry_ = summary_.consumed;
+  if (entry_before_) {
+    unsound_entry_ = entry_before_;
   } else if (batch_ > 1) {
     most_items_ = std::min<Word>(batch_, max_batch_) / 2;
   } else {
@@ -214,15 +215,15 @@ Word StreamSolver::consume(Time now) noexcept {
   available_ = reachable(written);
   keep_ = live_ ? now - live_->history : Time::max();
   rest_where_held();
-  withdraw();
-  bool is_blocked = false;
   is_postponed_ = false;
-  has_entry_only_ = false;
+  entry_before_.reset();
   tries_ = PublishedCurve::kTriesPerStep;
   batch_limit_ = most_items_;
-  for (batch_ = 0; summary_.consumed < available_ && batch_ < batch_limit_ && !is_damaged();) {
+  batch_ = 0;
+  bool is_blocked = withdraw();
+  while (!is_blocked && summary_.consumed < available_ && batch_ < batch_limit_ && !is_damaged()) {
     ring_->copy(summary_.consumed, item_);
-    is_blocked = enters_before(item_) || !has_room(item_);
+    is_blocked = enters_before(summary_.consumed) || !has_room(item_);
     if (is_blocked) break;
     take(summary_.consumed++);
     if (is_postponed_) {
@@ -282,18 +283,19 @@ void StreamSolver::plan_law(Time now) noexcept {
   plan_ = planner_->plan(now, settled_until_);
 }
 
-/// Whether the curve enters onto the waypoints before a replacement, which is taken in the next
-/// revision then. The entry is a revision of its own, so that it does not depend on when the
-/// waypoints were taken.
-bool StreamSolver::enters_before(const RingItem& item) noexcept {
-  if (item.kind != ItemKind::replace || summary_.consumed == unsound_entry_) return false;
-  if (curve_.may_enter_before(item.time)) {
+/// Whether the curve enters onto the waypoints before the replacement with this number, which is
+/// taken in the next revision then. The entry is a revision of its own, so that it does not depend
+/// on when the waypoints were taken. The item has been copied.
+bool StreamSolver::enters_before(Word replacement) noexcept {
+  if (item_.kind != ItemKind::replace || replacement == unsound_entry_) return false;
+  if (curve_.may_enter_before(item_.time)) {
     if (batch_ > 0) return true;
     curve_.enter_before_cut(settled_until_, keep_);
-  } else if (!curve_.decide_start(time_of_cut(item.time), settled_until_, keep_, tries_)) {
+  } else if (!curve_.decide_start(time_of_cut(item_.time), settled_until_, keep_, tries_)) {
     return false;
   }
-  has_entry_only_ = batch_ == 0 && curve_.has_changes();
+  if (batch_ == 0 && curve_.has_changes()) entry_before_ = replacement;
+  is_postponed_ = live_ && entry_before_;
   return curve_.has_changes();
 }
 
@@ -311,21 +313,24 @@ bool StreamSolver::has_room(const RingItem& item) const noexcept {
 
 /// Searches the ring for a replacement that is due, and withdraws all items queued before it. They
 /// may be replacements that are not yet due, and waypoints for which the board has no room.
-/// Withdraws nothing if the replacement itself must wait for room.
-void StreamSolver::withdraw() noexcept {
-  if (!curve_.has_begun() || summary_.finished) return;
+/// Withdraws nothing if the replacement itself must wait for room, or for a start that is decided
+/// before it: returns true in that case.
+bool StreamSolver::withdraw() noexcept {
+  if (!curve_.has_begun() || summary_.finished) return false;
   replacements_.note(summary_.consumed, available_);
-  if (replacements_.empty()) return;
+  if (replacements_.empty()) return false;
   const auto replacement = replacements_.due(time_of_cut(Time::min()), curve_.newest_time());
-  if (!replacement) return;
+  if (!replacement) return false;
   ring_->copy(*replacement, item_);
-  if (!has_room(item_)) return;
+  if (!has_room(item_)) return false;
+  if (live_ && enters_before(*replacement)) return true;
   if (*replacement > summary_.consumed) {
     outcomes_.record(
         {.item = *replacement - 1, .kind = OutcomeKind::withdrawn, .first = summary_.consumed});
   }
   summary_.withdrawn += *replacement - summary_.consumed;
   summary_.consumed = *replacement;
+  return false;
 }
 
 /// Records on the board whether the last commit was late, because the process was stopped between

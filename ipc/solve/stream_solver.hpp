@@ -128,9 +128,9 @@ class StreamSolver {
   void begin_run(Time t, const RunBegin& how) noexcept;
   [[nodiscard]] bool is_damaged() const noexcept { return lacks_summary_ || curve_.is_damaged(); }
   [[nodiscard]] Word reachable(Word written) const noexcept;
-  [[nodiscard]] bool enters_before(const RingItem& item) noexcept;
+  [[nodiscard]] bool enters_before(Word replacement) noexcept;
   [[nodiscard]] bool has_room(const RingItem& item) const noexcept;
-  void withdraw() noexcept;
+  [[nodiscard]] bool withdraw() noexcept;
   /// Whether an item is a stop: a replacement without waypoints.
   [[nodiscard]] static bool is_stop(const RingItem& item) noexcept {
     return item.kind == ItemKind::replace && item.count == 0;
@@ -193,7 +193,7 @@ class StreamSolver {
   /// Current maximum of items per revision: max_batch_, or fewer after an unsound revision.
   Word most_items_ = 0;
   std::optional<Word> unsound_item_{};   ///< the item that alone makes a revision unsound
-  bool has_entry_only_ = false;          ///< the revision has no items: see enters_before()
+  std::optional<Word> entry_before_{};   ///< the revision has no items: see enters_before()
   std::optional<Word> unsound_entry_{};  ///< the replacement before which an entry is unsound
   Word available_ = 0;                   ///< this step takes items before this one
   ReplacementQueue replacements_;

@@ -57,7 +57,12 @@ struct Watched : LiveStream {
       replace_solver();
       takes_over_at = Time::max();
     }
+    const Summary before = solver.summary();
     solver.step(clock);
+    EXPECT_LE(solver.summary().revision, before.revision + 1);
+    // What is withdrawn is so in the revision of the replacement.
+    EXPECT_TRUE(solver.summary().withdrawn == before.withdrawn ||
+                solver.summary().controls > before.controls);
     is_searching = solver.due() <= clock.time;
     note();
     const Summary& summary = solver.summary();
