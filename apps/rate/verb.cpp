@@ -66,7 +66,9 @@ std::unique_ptr<ipc::LawFollower> open_law(const RateOptions& options) {
 }
 
 std::vector<ipc::CommanderState> commanders_of(const RateOptions& options) {
-  ipc::Commanders commanders(options.law, options.trust);
+  ipc::RegionWatch watch;
+  watch.look();
+  ipc::Commanders commanders(options.law, options.trust, watch);
   commanders.look_around();
   commanders.read(MonotonicClock().now());
   return commanders.states();

@@ -37,9 +37,11 @@ void Commanders::look_around(bool needs_room) {
     states_.erase(states_.begin() + std::ptrdiff_t(i));
   }
   look_for_life(needs_room);
-  if (!folder_.has_changed() && unusable_.empty()) return;
+  if (!has_news() && unusable_.empty()) return;
   unusable_.clear();
-  for (const std::string& name : commander_names(law_)) {
+  const auto names = watch_->commanders().find(law_);
+  const bool has_any = names != watch_->commanders().end();
+  for (const std::string& name : has_any ? names->second : std::set<std::string>{}) {
     if (has(name)) continue;
     try {
       const std::string stream = commander_stream(law_, name);
@@ -55,6 +57,7 @@ void Commanders::look_around(bool needs_room) {
       unusable_.push_back({.name = name, .why = error.what()});
     }
   }
+  seen_ = watch_->commanders_version();
 }
 
 /// Looks which of those that request nothing live.
@@ -68,9 +71,10 @@ void Commanders::look_for_life(bool needs_room) {
 }
 
 bool Commanders::calls() const noexcept {
-  return std::ranges::any_of(sources_, [](const Source& source) {
-    return load(source.control[kCommanderSequence], std::memory_order_seq_cst) != source.seen;
-  });
+  return has_news() || std::ranges::any_of(sources_, [](const Source& source) {
+           return load(source.control[kCommanderSequence], std::memory_order_seq_cst) !=
+                  source.seen;
+         });
 }
 
 void Commanders::read_newest(Source& source, CommanderState& state, Time now) noexcept {

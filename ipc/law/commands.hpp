@@ -8,7 +8,7 @@
 #include "core/laws/rate_plan.hpp"
 #include "ipc/law/commander_record.hpp"
 #include "ipc/mapping/region.hpp"
-#include "ipc/memory/folder_watch.hpp"
+#include "ipc/memory/region_watch.hpp"
 #include "ipc/memory/word.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/time.hpp"
@@ -51,13 +51,18 @@ struct UnusableCommander {
 /// The commanders of one law, as the law's solver observes them. One thread uses it.
 class Commanders {
  public:
-  Commanders(std::string law, const Trust& trust) : law_(std::move(law)), trust_(trust) {}
+  /// `watch` knows the names of the commanders; it outlives this object, and its owner calls its
+  /// look().
+  Commanders(std::string law, const Trust& trust, const RegionWatch& watch)
+      : law_(std::move(law)), trust_(trust), watch_(&watch) {}
 
-  /// Looks for commanders that have come. One system call if no file of shared memory has come or
-  /// gone since the last call, else it reads the folder; allocates for new ones. In one of 50
-  /// calls, and if `needs_room`, some more for each commander that requests nothing, to see whether
-  /// its process lives. A region that cannot be used, or that has the clock of another time
-  /// namespace, is ignored, and tried again in the next call.
+  /// Whether a commander of any law has come or gone since the last look_around(). One load.
+  [[nodiscard]] bool has_news() const noexcept { return watch_->commanders_version() != seen_; }
+
+  /// Opens the regions of commanders that have come. Without any, no system call and no allocation.
+  /// In one of 50 calls, and if `needs_room`, some system calls for each commander that requests
+  /// nothing, to see whether its process lives. A region that cannot be used, or that has the clock
+  /// of another time namespace, is ignored, and tried again in the next call.
   void look_around(bool needs_room = false);
 
   [[nodiscard]] bool empty() const noexcept { return sources_.empty(); }
@@ -67,7 +72,8 @@ class Commanders {
     return unusable_;
   }
 
-  /// Whether a commander has given a command since the last read(). One load per commander.
+  /// Whether a commander has come, or given a command since the last read(). One load per
+  /// commander.
   [[nodiscard]] bool calls() const noexcept;
 
   /// Reads what each commander requests. `now` decides which dead men have expired. A record that
@@ -102,7 +108,8 @@ class Commanders {
 
   std::string law_;
   Trust trust_;
-  FolderWatch folder_;
+  const RegionWatch* watch_;
+  std::optional<Word> seen_{};               ///< version of the watch at the last look_around()
   std::vector<UnusableCommander> unusable_;  ///< tried again in the next look_around()
   int looks_ = 0;                            ///< calls of look_around()
   std::vector<Source> sources_;

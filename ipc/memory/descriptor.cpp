@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <pthread.h>
+#include <sys/inotify.h>
 #include <unistd.h>
 
 #include <mutex>
@@ -33,17 +34,26 @@ Registry& registry() {
 
 }  // namespace
 
-OwnedDescriptor OwnedDescriptor::open(const std::string& path, int flags, mode_t mode) {
+template <typename Make>
+OwnedDescriptor OwnedDescriptor::own(const Make& make) {
   Registry& owned = registry();
   const std::scoped_lock guard(owned.mutex);
   owned.descriptors.push_back(-1);
-  const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC, mode);
+  const int descriptor = make();
   if (descriptor < 0) {
     owned.descriptors.pop_back();
   } else {
     owned.descriptors.back() = descriptor;
   }
   return OwnedDescriptor(descriptor);
+}
+
+OwnedDescriptor OwnedDescriptor::open(const std::string& path, int flags, mode_t mode) {
+  return own([&] { return ::open(path.c_str(), flags | O_CLOEXEC, mode); });
+}
+
+OwnedDescriptor OwnedDescriptor::event_queue() {
+  return own([] { return ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC); });
 }
 
 OwnedDescriptor::OwnedDescriptor(OwnedDescriptor&& other) noexcept

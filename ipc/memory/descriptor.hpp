@@ -16,6 +16,9 @@ class OwnedDescriptor {
   /// waits until the descriptor is registered for closing in children.
   [[nodiscard]] static OwnedDescriptor open(const std::string& path, int flags, mode_t mode = 0);
 
+  /// The same with inotify_init1(2): an event queue that is read without waiting.
+  [[nodiscard]] static OwnedDescriptor event_queue();
+
   OwnedDescriptor(OwnedDescriptor&& other) noexcept;
   OwnedDescriptor& operator=(OwnedDescriptor&& other) noexcept;
   OwnedDescriptor(const OwnedDescriptor&) = delete;
@@ -26,6 +29,8 @@ class OwnedDescriptor {
 
  private:
   explicit OwnedDescriptor(int descriptor) noexcept : descriptor_(descriptor) {}
+  template <typename Make>
+  [[nodiscard]] static OwnedDescriptor own(const Make& make);
   void close() noexcept;
   int descriptor_ = -1;
 };

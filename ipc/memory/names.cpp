@@ -39,29 +39,17 @@ bool is_name_character(char c) noexcept {
          c == '_' || c == '-';
 }
 
-/// The name in the name of a region's file or of its lock file; an empty view for other files.
-std::string_view name_in(std::string_view file) noexcept {
-  if (!file.starts_with(kPrefix)) return {};
-  file.remove_prefix(kPrefix.size());
-  if (file.ends_with(kLockSuffix)) file.remove_suffix(kLockSuffix.size());
-  for (const RegionKind kind : kKinds) {
-    if (!file.ends_with(suffix(kind))) continue;
-    file.remove_suffix(suffix(kind).size());
-    return file;
-  }
-  return {};
+bool is_commander_name(std::string_view stream) noexcept {
+  const auto [law, name] = split_commander(stream);
+  return is_stream_name(law) && is_stream_name(name);
 }
 
-/// Calls `take` with the name in each file of the folder of shared memory.
+/// Calls `take` with the file of each region and lock.
 template <typename Take>
-void for_each_name(const Take& take) {
-  std::error_code error;
-  std::filesystem::directory_iterator entry(kSharedMemoryFolder, error);
-  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
-    const std::string file = entry->path().filename();
-    take(name_in(file));
-  }
-  if (error) throw_failure("cannot read " + std::string(kSharedMemoryFolder), error.value());
+void for_each_region(const Take& take) {
+  for_each_file([&](std::string_view file) {
+    if (const auto region = region_in(file)) take(*region);
+  });
 }
 
 /// Bytes of the UTF-8 character at the start of a text, if it can be printed unchanged; 0 for a
@@ -135,24 +123,41 @@ std::string commander_stream(std::string_view law, std::string_view commander) {
   return std::string(law).append(1, kOfCommander).append(commander);
 }
 
-std::vector<std::string> commanded_laws() {
-  std::set<std::string> names;
-  for_each_name([&](std::string_view name) {
-    const std::size_t at = name.find(kOfCommander);
-    if (at == std::string_view::npos || !is_stream_name(name.substr(at + 1))) return;
-    if (is_stream_name(name.substr(0, at))) names.emplace(name.substr(0, at));
-  });
-  return {names.begin(), names.end()};
+std::optional<RegionFileName> region_in(std::string_view file) noexcept {
+  if (!file.starts_with(kPrefix)) return std::nullopt;
+  file.remove_prefix(kPrefix.size());
+  const bool is_lock = file.ends_with(kLockSuffix);
+  if (is_lock) file.remove_suffix(kLockSuffix.size());
+  for (const RegionKind kind : kKinds) {
+    if (!file.ends_with(suffix(kind))) continue;
+    file.remove_suffix(suffix(kind).size());
+    if (!is_stream_name(file) && !is_commander_name(file)) break;
+    return RegionFileName{.stream = file, .kind = kind, .is_lock = is_lock};
+  }
+  return std::nullopt;
+}
+
+std::pair<std::string_view, std::string_view> split_commander(std::string_view stream) noexcept {
+  const std::size_t at = std::min(stream.find(kOfCommander), stream.size());
+  return {stream.substr(0, at), stream.substr(std::min(at + 1, stream.size()))};
+}
+
+void for_each_file(const std::function<void(std::string_view file)>& take) {
+  std::error_code error;
+  std::filesystem::directory_iterator entry(kSharedMemoryFolder, error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    const std::string file = entry->path().filename();
+    take(file);
+  }
+  if (error) throw_failure("cannot read " + std::string(kSharedMemoryFolder), error.value());
 }
 
 std::vector<std::string> commander_names(std::string_view law) {
-  const std::string prefix = std::string(law).append(1, kOfCommander);
   require_stream_name(law);
   std::set<std::string> names;
-  for_each_name([&](std::string_view name) {
-    if (!name.starts_with(prefix)) return;
-    name.remove_prefix(prefix.size());
-    if (is_stream_name(name)) names.emplace(name);
+  for_each_region([&](const RegionFileName& region) {
+    const auto [of, name] = split_commander(region.stream);
+    if (of == law && !name.empty()) names.emplace(name);
   });
   return {names.begin(), names.end()};
 }
@@ -186,8 +191,8 @@ namespace splinecast {
 
 std::vector<std::string> stream_names() {
   std::set<std::string> names;
-  ipc::for_each_name([&](std::string_view name) {
-    if (ipc::is_stream_name(name)) names.emplace(name);
+  ipc::for_each_region([&](const ipc::RegionFileName& region) {
+    if (ipc::is_stream_name(region.stream)) names.emplace(region.stream);
   });
   return {names.begin(), names.end()};
 }

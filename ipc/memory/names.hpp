@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace splinecast::ipc {
@@ -35,9 +38,24 @@ void require_stream_name(std::string_view stream);
 /// stream can have. Throws BadRequest unless both can name a stream.
 [[nodiscard]] std::string commander_stream(std::string_view law, std::string_view commander);
 
-/// The time laws for which a commander has a region, in alphabetical order. Reads the folder of
-/// shared memory. Throws OutOfResources if it cannot be read.
-[[nodiscard]] std::vector<std::string> commanded_laws();
+/// The file of a region, or of its owner's lock. `stream` is a stream's name or a result of
+/// commander_stream(); it refers to the file name.
+struct RegionFileName {
+  std::string_view stream;
+  RegionKind kind;
+  bool is_lock;
+};
+
+/// What a file of this name is; nothing for other files.
+[[nodiscard]] std::optional<RegionFileName> region_in(std::string_view file) noexcept;
+
+/// The law and the commander in a result of commander_stream().
+[[nodiscard]] std::pair<std::string_view, std::string_view> split_commander(
+    std::string_view stream) noexcept;
+
+/// Calls `take` with the name of each file in the folder of shared memory. Throws OutOfResources if
+/// it cannot be read.
+void for_each_file(const std::function<void(std::string_view file)>& take);
 
 /// The commanders of a time law that have a region, in alphabetical order. Reads the folder of
 /// shared memory. Throws BadRequest for an invalid name, OutOfResources if the folder cannot be

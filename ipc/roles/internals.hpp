@@ -14,6 +14,7 @@
 
 namespace splinecast::ipc {
 
+class RegionWatch;
 class SolverWatch;
 
 /// Access to the internals of the public roles, for other parts of this project: its program, its
@@ -30,6 +31,10 @@ struct Internals {
   /// A producer with this host's clock, which outlives it.
   [[nodiscard]] static Producer producer(std::string stream, ProducerOptions options,
                                          const Clock& clock);
+
+  /// The solver uses this watch, which outlives it and whose owner calls its look() before each
+  /// step, instead of one of its own.
+  static void share(Solver& solver, const RegionWatch& watch) noexcept;
 
   /// The summary last committed. This and the next three functions require an attached solver.
   [[nodiscard]] static const Summary& summary(const Solver& solver) noexcept;

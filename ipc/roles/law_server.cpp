@@ -40,8 +40,8 @@ ProducerOptions ring_options(const SolverOptions& options) {
 
 }  // namespace
 
-bool LawServer::is_wanted(const std::string& law) {
-  return !commander_names(law).empty() && !is_owned(law, RegionKind::waypoints);
+bool LawServer::is_wanted(const std::string& law, const RegionWatch& watch) {
+  return watch.commanders().contains(law) && !is_owned(law, RegionKind::waypoints);
 }
 
 SolverOptions LawServer::solver_options(const SolverOptions& options) {
@@ -56,14 +56,14 @@ SolverOptions LawServer::solver_options(const SolverOptions& options) {
           .trust = options.trust};
 }
 
-LawServer::LawServer(const std::string& law, const SolverOptions& options)
+LawServer::LawServer(const std::string& law, const SolverOptions& options, const RegionWatch& watch)
     : lock_(law, RegionKind::waypoints),
       ring_(own_ring(law, ring_options(options), lock_,
                      [&](RegionHeader& header) {
                        describe_law(header);
                        header.largest_rate = options.largest_rate.value_or(1.0);
                      })),
-      commanders_(law, options.trust),
+      commanders_(law, options.trust, watch),
       rate_(ring_.header.largest_rate) {
   lock_.keep_file();
   commanders_.look_around();
@@ -137,7 +137,7 @@ void LawServer::judge_sent() noexcept {
 
 void LawServer::look_around(const Clock& clock) {
   const Time now = clock.now();
-  if (now < next_look_) return;
+  if (now < next_look_ && !commanders_.has_news()) return;
   // The table may be full of commanders whose processes have just ended.
   const bool needs_room =
       is_rate_known_ && std::ranges::any_of(commanders_.states(), [&](const auto& state) {

@@ -13,6 +13,7 @@
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/mapping/owner_lock.hpp"
+#include "ipc/memory/region_watch.hpp"
 #include "ipc/owned/ring.hpp"
 #include "ipc/sampling/sampler.hpp"
 #include "ipc/solve/law_planner.hpp"
@@ -33,12 +34,13 @@ namespace splinecast::ipc {
 class LawServer : public LawPlanner {
  public:
   /// Whether there is a law of this name to be produced: a commander has a region, and no other
-  /// process is the law's producer. System calls.
-  [[nodiscard]] static bool is_wanted(const std::string& law);
+  /// process is the law's producer. System calls if there is a commander.
+  [[nodiscard]] static bool is_wanted(const std::string& law, const RegionWatch& watch);
 
   /// Becomes the producer of the law: continues its ring or creates one, whose origin is the
-  /// present. Throws as the constructor of Producer does.
-  LawServer(const std::string& law, const SolverOptions& options);
+  /// present. `watch` outlives this object; its owner calls its look() before each step. Throws as
+  /// the constructor of Producer does.
+  LawServer(const std::string& law, const SolverOptions& options, const RegionWatch& watch);
 
   /// The options with which the law's board is solved: those of `options` that laws have.
   [[nodiscard]] static SolverOptions solver_options(const SolverOptions& options);
@@ -46,8 +48,9 @@ class LawServer : public LawPlanner {
   /// Begins to use the law's board, with this header. It outlives this object.
   void attach(const KnotBoardReader& board, const RegionHeader& header);
 
-  /// Looks for new commanders every 20 ms, with system calls. Call it before the solver's step.
-  /// `clock` is the host's.
+  /// Opens new commanders' regions when the watch knows them, and looks every 20 ms for those that
+  /// are gone or cannot be used, with system calls. Call it before the solver's step. `clock` is
+  /// the host's.
   void look_around(const Clock& clock);
 
   /// Appends the items that the commands require now: see LawPlanner. Requires attach().

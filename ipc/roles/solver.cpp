@@ -94,6 +94,8 @@ struct Solver::Impl {
   std::string stream;
   SolverOptions options;
   ipc::OwnerLock lock;
+  const ipc::RegionWatch* watch = nullptr;  ///< of this object, or of its caller
+  std::unique_ptr<ipc::RegionWatch> own_watch;
   std::unique_ptr<ipc::LawServer> server;  ///< if the stream is a law
   std::unique_ptr<Attachment> attachment;
   Time next_attach = Time::min();
@@ -122,9 +124,18 @@ struct Solver::Impl {
       const auto peeked = ipc::peek_header(stream, ipc::RegionKind::waypoints, options.trust);
       if (!peeked || peeked->is_law == 0) return true;
     }
-    if (!ipc::LawServer::is_wanted(stream)) return has_ring;
-    server = std::make_unique<ipc::LawServer>(stream, options);
+    if (watch == nullptr) {
+      own_watch = std::make_unique<ipc::RegionWatch>();
+      watch = own_watch.get();
+    }
+    look();
+    if (!ipc::LawServer::is_wanted(stream, *watch)) return has_ring;
+    server = std::make_unique<ipc::LawServer>(stream, options, *watch);
     return true;
+  }
+
+  void look() {
+    if (own_watch) own_watch->look();
   }
 
   /// Opens the law that a stream follows. Returns false if there is none, or if it has not begun.
@@ -199,7 +210,10 @@ bool Solver::attached() const noexcept { return impl_->attachment != nullptr; }
 StepResult Solver::step(const Clock& clock) {
   if (!attached()) return {};
   Attachment& at = *impl_->attachment;
-  if (impl_->server) impl_->server->look_around(clock);
+  if (impl_->server) {
+    impl_->look();
+    impl_->server->look_around(clock);
+  }
   const StepResult result = at.step(clock);
   if (result.damaged) {
     throw BadRegion(ipc::region_path(impl_->stream, ipc::RegionKind::spline) +
@@ -209,7 +223,8 @@ StepResult Solver::step(const Clock& clock) {
     ipc::wake_some(at.board.writer.revision_word());
     (void)at.board.lock.hold();
   }
-  if (result.consumed == 0 && !result.missed && at.ring.ring.retired()) {
+  const bool is_idle = result.consumed == 0 && !result.missed && !at.solver.is_postponed();
+  if (is_idle && at.ring.ring.retired()) {
     impl_->attachment.reset();
     impl_->server.reset();
   }
@@ -305,6 +320,10 @@ std::optional<LimitExcess> ipc::Internals::worst_excess(const Solver& solver) no
 
 const ipc::RegionHeader& ipc::Internals::board(const Solver& solver) noexcept {
   return solver.impl_->attachment->board.header;
+}
+
+void ipc::Internals::share(Solver& solver, const RegionWatch& watch) noexcept {
+  solver.impl_->watch = &watch;
 }
 
 bool ipc::Internals::hold_region(Solver& solver) noexcept {

@@ -101,6 +101,9 @@ class StreamSolver {
   /// when the ring's written position differs from it, or when `due` has come.
   [[nodiscard]] Word seen() const noexcept { return seen_; }
 
+  /// Whether the last step has begun what the next item needs, and the next one continues it.
+  [[nodiscard]] bool is_postponed() const noexcept { return is_postponed_; }
+
   /// Host time at which the next step is due even if no item comes; max() for never.
   [[nodiscard]] Time due() const noexcept;
 

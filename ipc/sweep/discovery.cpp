@@ -2,22 +2,22 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <iterator>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
 #include "ipc/sweep/many_streams.hpp"
-#include "splinecast/streams.hpp"
 
 namespace splinecast::ipc {
 
 void StreamSweep::look_around() {
-  const bool has_changed = folder_.has_changed();
-  if (has_changed || looks_again_) {
+  if (regions_.version() != seen_ || looks_again_) {
     looks_again_ = true;
     look_for_names();
+    seen_ = regions_.version();
     looks_again_ = false;
   }
   note_ends_of_motion();
@@ -30,26 +30,21 @@ void StreamSweep::look_around() {
 /// exist.
 void StreamSweep::look_for_names() {
   to_take_.clear();
-  std::vector<std::string> standing = stream_names();
-  std::erase_if(standing, [](const std::string& stream) {
-    return !region_exists(stream, RegionKind::waypoints);
-  });
+  std::set<std::string> standing = regions_.streams();
   // The ring of a law is made by its solver, once there is a commander.
-  std::ranges::copy(commanded_laws(), std::back_inserter(standing));
-  std::ranges::sort(standing);
-  standing.erase(std::unique(standing.begin(), standing.end()), standing.end());
+  for (const auto& [law, commanders] : regions_.commanders()) standing.insert(law);
   for (const std::string& stream : standing) {
     if (is_wanted(stream)) members_.try_emplace(stream);
   }
   std::erase_if(members_, [&](const auto& entry) {
     const auto& [stream, member] = entry;
-    const bool stands = std::ranges::binary_search(standing, stream);
+    const bool stands = standing.contains(stream);
     if (member.state == State::solved || stands || member.is_named) return false;
     tell(SweepNews::gone, stream, nullptr, {});
     return true;
   });
   for (auto& [stream, member] : members_) {
-    const bool stands = std::ranges::binary_search(standing, stream);
+    const bool stands = standing.contains(stream);
     if (!stands && !member.is_named) continue;
     // Its files have been replaced: it is a new stream, and is reported as one.
     if (member.state == State::given_up && files_of(stream) != member.files) {

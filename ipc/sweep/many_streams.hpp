@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "ipc/layout/summary.hpp"
-#include "ipc/memory/folder_watch.hpp"
+#include "ipc/memory/region_watch.hpp"
 #include "ipc/roles/solver_watch.hpp"
 #include "splinecast/solver.hpp"
 
@@ -40,11 +40,11 @@ enum class SweepNews : std::uint8_t {
 ///
 /// A sweep polls one cache line of each stream and steps the streams that have work to do. It polls
 /// a stream that has been idle for a second only every 20 ms, in turn with other idle streams,
-/// because such a poll misses the caches for that line and its page. Every 50 ms a sweep also looks
-/// for changes that need system calls: files that have come or gone in the folder of shared memory,
-/// and wanted streams whose solver in another process has died. A sweep attaches to at most one
-/// stream, because that maps memory, and the others must not wait long. Allocates only when streams
-/// come and go.
+/// because such a poll misses the caches for that line and its page. It reads which regions have
+/// come and gone, so that the law of a new commander is stepped at once. Every 50 ms it also looks
+/// for new streams, and for wanted streams whose solver in another process has died. A sweep
+/// attaches to at most one stream, because that maps memory, and the others must not wait long.
+/// Allocates only when streams come and go.
 class StreamSweep {
  public:
   /// Called when the state of a stream has changed, and for its first refusals, excess and finish.
@@ -159,8 +159,9 @@ class StreamSweep {
   SolverOptions options_;
   Tell tell_;
   std::vector<std::string> patterns_;
+  RegionWatch regions_;
+  std::optional<Word> seen_{};  ///< version of regions_ when the names were listed last
   std::map<std::string, Member> members_;
-  FolderWatch folder_;
   Time next_look_ = Time::min();
   bool looks_again_ = false;  ///< the next look lists the names even if the folder is unchanged
   Time next_retry_ = Time::min();

@@ -15,6 +15,7 @@ constexpr Time kLookAround = std::chrono::milliseconds(50);
 bool StreamSweep::sweep(const Clock& clock) {
   now_ = clock.now();
   try {
+    regions_.look();
     take_up(clock);
   } catch (const std::exception&) {
     looks_again_ = true;  // the process lacks memory or descriptors; solved streams continue

@@ -44,12 +44,13 @@ bool StreamSweep::own(const std::string& stream, Member& member) {
   try {
     // Checks before it locks, because the lock creates a file and there may be many streams that
     // cannot be solved.
-    const bool is_new_law = LawServer::is_wanted(stream);
+    const bool is_new_law = LawServer::is_wanted(stream, regions_);
     if (!member.is_named && !is_new_law) {
       (void)look_at_region(stream, RegionKind::waypoints, options_.trust);
     }
     if (is_owned(stream, RegionKind::spline)) throw StreamBusy(stream);
     member.waiting = std::make_unique<Solver>(stream, options_);
+    Internals::share(*member.waiting, regions_);
     return true;
   } catch (const StreamBusy&) {
     become(stream, member, State::elsewhere, SweepNews::elsewhere);
@@ -66,6 +67,7 @@ bool StreamSweep::own(const std::string& stream, Member& member) {
 /// Attaches to the stream if it exists. Returns whether it did.
 bool StreamSweep::attach(const std::string& stream, Member& member, const Clock& clock) {
   try {
+    regions_.look();  // a law begins with the requests that are there
     if (!member.waiting->attach(clock)) {
       const bool is_noted = std::ranges::find(moving_, stream) != moving_.end();
       if (member.waiting->due() < Time::max() && !is_noted) moving_.push_back(stream);

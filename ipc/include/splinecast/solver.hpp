@@ -60,7 +60,7 @@ class Solver {
   [[nodiscard]] bool attached() const noexcept;
 
   /// Consumes waypoints from the ring and publishes. Does nothing unless attached(). If the stream
-  /// has been removed, withdrawn or created again, the first step that consumes no item detaches;
+  /// has been removed, withdrawn or created again, the first step that has nothing to do detaches;
   /// then call attach() again. No system calls except the clock's and, with SolverOptions::wake,
   /// one wake per revision, of bounded cost for any number of waiting readers. Throws BadRegion if
   /// another process has written to the board.

@@ -77,6 +77,7 @@ class LawCommanders : public ::testing::Test {
  protected:
   /// The least rate that is requested.
   double read(Time now, double largest = 1) {
+    watch_.look();
     commanders_.look_around();
     commanders_.read(now);
     return least_rate(commanders_.states(), largest);
@@ -84,7 +85,8 @@ class LawCommanders : public ::testing::Test {
   /// What the first commander asks of a law.
   core::RateRequest request() { return commanders_.states().front().request(1); }
   TestStream law_;
-  Commanders commanders_{law_.name(), {}};
+  RegionWatch watch_;
+  Commanders commanders_{law_.name(), {}, watch_};
 };
 
 TEST_F(LawCommanders, WithoutARequestTheRateIsOne) {

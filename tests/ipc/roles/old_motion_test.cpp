@@ -39,6 +39,11 @@ class OldMotion : public ::testing::Test {
     }
   }
 
+  [[nodiscard]] static bool finished(const Reader& reader) {
+    Summary summary;
+    return Internals::summary(reader, summary) && summary.finished;
+  }
+
   testing::TestStream stream_;
   testing::FixedClock clock_;
   ProducerOptions options_{.dimensions = 1, .horizon = Time::max()};
@@ -67,6 +72,10 @@ TEST_F(OldMotion, IsFoundByAReaderThatAttachesWhileANewerStreamWaitsForItsEnd) {
   EXPECT_TRUE(has_values(reader.preview(first + milliseconds(500), state)));
   // At rest it is not found any more: the newer stream's board is about to replace it.
   clock_.time = first + seconds(2);
+  for (int i = 0; i < 100 && solver.attached(); ++i) solver.step(clock_);
+  ASSERT_FALSE(solver.attached());
+  EXPECT_TRUE(finished(reader)) << "the finish was taken, although its end had to be searched for";
+  clock_.time += seconds(60);
   for (int i = 0; i < 10; ++i) {
     if (solver.attach(clock_)) solver.step(clock_);
   }

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "ipc/memory/descriptor.hpp"
+#include "ipc/memory/folder_watch.hpp"
+#include "ipc/memory/word.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::ipc {
+
+/// Which streams and commanders have a region, kept up to date by the kernel's events of the shared
+/// memory folder (inotify): one that comes is known at the next look(), for any number of other
+/// files. Without inotify, as when the user has no event queue left, by the folder's
+/// modification time, within 20 ms or 20 times what it takes to read the folder. Once a second that
+/// time is compared with the events, too, in case none arrive. One thread uses it.
+class RegionWatch {
+ public:
+  RegionWatch();
+
+  /// Reads what has come and gone. While nothing has: one system call, no allocation. Else one
+  /// system call per 4 kB of names. Reads the folder at the first call, and if events are missing;
+  /// without inotify if any file has come or gone. Throws OutOfResources if the folder cannot be
+  /// read: the next call tries again.
+  void look();
+
+  /// Differs from its earlier value once a file of a region, or of a lock, has come or gone.
+  [[nodiscard]] Word version() const noexcept { return version_; }
+  /// The same for commanders' regions only.
+  [[nodiscard]] Word commanders_version() const noexcept { return commanders_version_; }
+
+  /// The streams that have a ring.
+  [[nodiscard]] const std::set<std::string>& streams() const noexcept { return streams_; }
+
+  /// The names of each law's commanders; only laws that have one.
+  using Commanders = std::map<std::string, std::set<std::string>>;
+  [[nodiscard]] const Commanders& commanders() const noexcept { return commanders_; }
+
+ private:
+  void take_events();
+  void take_event(std::string_view file, bool comes);
+  void read_folder();
+
+  OwnedDescriptor events_;
+  FolderWatch folder_;
+  Time next_check_ = Time::min();  ///< when the modification time is looked at
+  bool has_event_ = false;         ///< since the last time that it was
+  bool is_complete_ = false;
+  Word version_ = 0;
+  Word commanders_version_ = 0;
+  std::set<std::string> streams_;
+  Commanders commanders_;
+};
+
+}  // namespace splinecast::ipc
