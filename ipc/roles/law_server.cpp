@@ -143,8 +143,9 @@ void LawServer::look_around(const Clock& clock) {
       is_rate_known_ && std::ranges::any_of(commanders_.states(), [&](const auto& state) {
         return state.is_used() && !rate_.knows(state.id);
       });
-  commanders_.look_around(needs_room);
+  // Before a new commander is read, which the next plan makes known.
   if (is_rate_known_) faults_.look(commanders_, rate_, ring_.header.largest_rate);
+  commanders_.look_around(needs_room);
   next_look_ = now + kLookEvery;
 }
 

@@ -237,6 +237,18 @@ TEST_F(InForce, ACommanderOfAnotherTimeNamespaceIsNotTaken) {
   EXPECT_TRUE(faults().empty()) << "once";
 }
 
+TEST_F(InForce, ANewCommanderIsHeardInTheNextStepAndNotReported) {
+  pass(milliseconds(50));
+  EXPECT_TRUE(faults().empty());
+  RateCommander panel(law_.name(), "panel");
+  const auto request = panel.set_rate(0.5, milliseconds(10));
+  (void)law_solver_->step(clock_);
+  EXPECT_TRUE(panel.wait_in_force(request, Time::zero()));
+  pass(milliseconds(100));
+  EXPECT_EQ(rate(), 0.5);
+  EXPECT_TRUE(faults().empty());
+}
+
 TEST_F(InForce, ADeadManThatHasFiredIsReported) {
   operator_.set_dead_man(milliseconds(20), milliseconds(10));
   (void)operator_.set_rate(0.5, milliseconds(10));
