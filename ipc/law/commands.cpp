@@ -39,9 +39,7 @@ void Commanders::look_around(bool needs_room) {
   look_for_life(needs_room);
   if (!has_news() && unusable_.empty()) return;
   unusable_.clear();
-  const auto names = watch_->commanders().find(law_);
-  const bool has_any = names != watch_->commanders().end();
-  for (const std::string& name : has_any ? names->second : std::set<std::string>{}) {
+  for (const std::string& name : watch_->commanders_of(law_)) {
     if (has(name)) continue;
     try {
       const std::string stream = commander_stream(law_, name);

@@ -44,14 +44,6 @@ bool is_commander_name(std::string_view stream) noexcept {
   return is_stream_name(law) && is_stream_name(name);
 }
 
-/// Calls `take` with the file of each region and lock.
-template <typename Take>
-void for_each_region(const Take& take) {
-  for_each_file([&](std::string_view file) {
-    if (const auto region = region_in(file)) take(*region);
-  });
-}
-
 /// Bytes of the UTF-8 character at the start of a text, if it can be printed unchanged; 0 for a
 /// control character and for invalid UTF-8.
 std::size_t printable_bytes(std::string_view text) noexcept {
@@ -142,12 +134,12 @@ std::pair<std::string_view, std::string_view> split_commander(std::string_view s
   return {stream.substr(0, at), stream.substr(std::min(at + 1, stream.size()))};
 }
 
-void for_each_file(const std::function<void(std::string_view file)>& take) {
+void for_each_region(const std::function<void(const RegionFileName& region)>& take) {
   std::error_code error;
   std::filesystem::directory_iterator entry(kSharedMemoryFolder, error);
   for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
     const std::string file = entry->path().filename();
-    take(file);
+    if (const auto region = region_in(file)) take(*region);
   }
   if (error) throw_failure("cannot read " + std::string(kSharedMemoryFolder), error.value());
 }

@@ -53,9 +53,9 @@ struct RegionFileName {
 [[nodiscard]] std::pair<std::string_view, std::string_view> split_commander(
     std::string_view stream) noexcept;
 
-/// Calls `take` with the name of each file in the folder of shared memory. Throws OutOfResources if
-/// it cannot be read.
-void for_each_file(const std::function<void(std::string_view file)>& take);
+/// Calls `take` for each file of a region or lock in the folder of shared memory. Throws
+/// OutOfResources if the folder cannot be read.
+void for_each_region(const std::function<void(const RegionFileName& region)>& take);
 
 /// The commanders of a time law that have a region, in alphabetical order. Reads the folder of
 /// shared memory. Throws BadRequest for an invalid name, OutOfResources if the folder cannot be

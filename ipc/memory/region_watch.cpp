@@ -9,9 +9,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <utility>
 
-#include "ipc/memory/names.hpp"
 #include "splinecast/clock.hpp"
 
 namespace splinecast::ipc {
@@ -69,23 +69,23 @@ void RegionWatch::take_events() {
       is_complete = is_complete && !has_lost;
       if ((event.mask & IN_IGNORED) != 0) events_ = {};  // the folder itself is gone
       has_event_ = true;
-      if (event.len > 0) take_event(file, (event.mask & kComes) != 0);
+      const auto region = event.len > 0 ? region_in(file) : std::nullopt;
+      if (region) note(*region, (event.mask & kComes) != 0);
     }
   }
   is_complete_ = is_complete;
 }
 
-void RegionWatch::take_event(std::string_view file, bool comes) {
-  const auto region = region_in(file);
-  if (!region) return;
+/// A file of a region or of a lock has come or gone.
+void RegionWatch::note(const RegionFileName& region, bool comes) {
   ++version_;
-  if (region->is_lock) return;
-  if (region->kind == RegionKind::waypoints && is_stream_name(region->stream)) {
-    if (comes) streams_.emplace(region->stream);
-    if (!comes) streams_.erase(std::string(region->stream));
+  if (region.is_lock) return;
+  if (region.kind == RegionKind::waypoints && is_stream_name(region.stream)) {
+    if (comes) streams_.emplace(region.stream);
+    if (!comes) streams_.erase(std::string(region.stream));
   }
-  const auto [law, name] = split_commander(region->stream);
-  if (region->kind != RegionKind::commander || name.empty()) return;
+  const auto [law, name] = split_commander(region.stream);
+  if (region.kind != RegionKind::commander || name.empty()) return;
   ++commanders_version_;
   auto& names = commanders_[std::string(law)];
   if (comes) names.emplace(name);
@@ -98,8 +98,14 @@ void RegionWatch::read_folder() {
   ++commanders_version_;
   streams_.clear();
   commanders_.clear();
-  for_each_file([&](std::string_view file) { take_event(file, true); });
+  for_each_region([&](const RegionFileName& region) { note(region, true); });
   is_complete_ = true;
+}
+
+const std::set<std::string>& RegionWatch::commanders_of(const std::string& law) const noexcept {
+  static const std::set<std::string> kNone;
+  const auto found = commanders_.find(law);
+  return found != commanders_.end() ? found->second : kNone;
 }
 
 }  // namespace splinecast::ipc

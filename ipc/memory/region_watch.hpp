@@ -3,10 +3,10 @@
 #include <map>
 #include <set>
 #include <string>
-#include <string_view>
 
 #include "ipc/memory/descriptor.hpp"
 #include "ipc/memory/folder_watch.hpp"
+#include "ipc/memory/names.hpp"
 #include "ipc/memory/word.hpp"
 #include "splinecast/time.hpp"
 
@@ -35,13 +35,14 @@ class RegionWatch {
   /// The streams that have a ring.
   [[nodiscard]] const std::set<std::string>& streams() const noexcept { return streams_; }
 
-  /// The names of each law's commanders; only laws that have one.
+  /// The names of a law's commanders, and those of each law that has one.
+  [[nodiscard]] const std::set<std::string>& commanders_of(const std::string& law) const noexcept;
   using Commanders = std::map<std::string, std::set<std::string>>;
   [[nodiscard]] const Commanders& commanders() const noexcept { return commanders_; }
 
  private:
   void take_events();
-  void take_event(std::string_view file, bool comes);
+  void note(const RegionFileName& region, bool comes);
   void read_folder();
 
   OwnedDescriptor events_;

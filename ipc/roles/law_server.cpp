@@ -41,7 +41,7 @@ ProducerOptions ring_options(const SolverOptions& options) {
 }  // namespace
 
 bool LawServer::is_wanted(const std::string& law, const RegionWatch& watch) {
-  return watch.commanders().contains(law) && !is_owned(law, RegionKind::waypoints);
+  return !watch.commanders_of(law).empty() && !is_owned(law, RegionKind::waypoints);
 }
 
 SolverOptions LawServer::solver_options(const SolverOptions& options) {

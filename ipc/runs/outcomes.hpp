@@ -56,6 +56,8 @@ class Outcomes {
 
   /// Records an outcome of which the solver itself knows.
   void record(const OutcomeRecord& record) noexcept { board_->write_outcome(count_++, record); }
+
+  /// Records that an item is in force at `time`.
   void note_in_force(Word item, OutcomeWay way, Time time) noexcept;
 
   /// The run has come this far. O(1).

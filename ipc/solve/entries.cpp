@@ -31,11 +31,17 @@ bool PublishedCurve::needs_entry() const noexcept {
   return is_searching_ && (course_ == Course::waiting || course_ == Course::beyond);
 }
 
-/// Whether the stream starts at rest at its first waypoint and the start can still be changed.
+/// Whether the run is the first one, and starts at rest at its first waypoint.
+bool PublishedCurve::starts_from_halt() const noexcept {
+  const core::WindowOptions& options = window_.options();
+  return !window_.is_later_run() && options.held_before_start &&
+         options.start.kind == ConditionKind::halt;
+}
+
+/// Whether such a start can still be changed.
 bool PublishedCurve::is_start_open() const noexcept {
-  const bool has_entered = course_ != Course::on_target && course_ != Course::starting;
-  return !has_entered && !window_.is_later_run() && window_.options().held_before_start &&
-         window_.options().start.kind == ConditionKind::halt && window_.knots() >= 2 &&
+  const bool may_change = course_ == Course::on_target || course_ == Course::starting;
+  return may_change && starts_from_halt() && window_.knots() >= 2 &&
          window_.oldest_segment() == 0 && window_.frozen_knots() == 0;
 }
 
@@ -61,10 +67,10 @@ void PublishedCurve::start_on_target() noexcept {
   note_change(window_.time(0));
 }
 
-/// Compares the start with the limits. While it exceeds one, the curve rests at the first waypoint,
-/// so that a solver that stops before the decision leaves no start that nothing has compared. The
-/// decision, which compares with the limits that the later motion shows, too, lets the stream start
-/// by an entry from rest.
+/// Compares the start with the limits. While it exceeds a given one, the curve rests at the first
+/// waypoint: if the solver stops before the decision, readers execute that rest. The decision also
+/// compares with the limits that the later motion shows. If the start exceeds one then, the stream
+/// starts by an entry from rest.
 void PublishedCurve::check_start(Time settled, bool is_decision) noexcept {
   core::EntryRules rules = entry_rules();
   if (is_decision) {
@@ -174,6 +180,7 @@ void PublishedCurve::look_for_entry(Time settled, Time keep, bool is_last, int& 
   search_entry(settled, keep, is_last, tries);
 }
 
+/// Searches for the entry that the curve needs, if it needs one.
 void PublishedCurve::search_entry(Time settled, Time keep, bool is_last, int& tries) noexcept {
   if (!needs_entry() || window_.knots() <= unmet_ || tries <= 0) return;
   if (!has_room_to_enter(keep) || !prepare(settled)) return;

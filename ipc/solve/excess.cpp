@@ -44,13 +44,11 @@ std::size_t PublishedCurve::first_open(Time settled) const noexcept {
 /// segments of a stream that starts at rest: check_start() compares them with the limits. On a live
 /// stream they are compared after that, unless an entry from rest may still pass over them.
 std::size_t PublishedCurve::first_compared(Time settled) const noexcept {
-  const bool is_at_rest = !window_.is_later_run() && window_.options().held_before_start &&
-                          window_.options().start.kind == ConditionKind::halt;
   const bool is_undecided = awaits_start_check() || (window_.knots() < 2 && !entries_.keeps_limits);
   const bool may_pass_over = is_undecided || (!is_on_line() && origin_.number == 1);
-  const bool starts_at_rest = is_at_rest && (!entries_.is_live || may_pass_over);
+  const bool excludes_start = starts_from_halt() && (!entries_.is_live || may_pass_over);
   return std::max(
-      {first_open(settled), trial_.oldest_segment(), starts_at_rest ? core::kStartFades : 0});
+      {first_open(settled), trial_.oldest_segment(), excludes_start ? core::kStartFades : 0});
 }
 
 /// The knots from passed_first() on: another window needs them to continue this one.

@@ -234,6 +234,7 @@ class PublishedCurve {
   [[nodiscard]] std::size_t passed_over() const noexcept;
 
   // Entries: entries.cpp.
+  [[nodiscard]] bool starts_from_halt() const noexcept;
   [[nodiscard]] bool is_start_open() const noexcept;
   void rest_at_start() noexcept;
   void start_on_target() noexcept;

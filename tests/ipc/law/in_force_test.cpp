@@ -16,6 +16,7 @@
 #include "ipc/layout/header.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
+#include "ipc/sweep/many_streams.hpp"
 #include "splinecast/errors.hpp"
 #include "tests/ipc/law/time_law.hpp"
 
@@ -237,7 +238,7 @@ TEST_F(InForce, ACommanderOfAnotherTimeNamespaceIsNotTaken) {
   EXPECT_TRUE(faults().empty()) << "once";
 }
 
-TEST_F(InForce, ANewCommanderIsHeardInTheNextStepAndNotReported) {
+TEST_F(InForce, ANewCommanderIsInForceAfterTheNextStepAndNotReported) {
   pass(milliseconds(50));
   EXPECT_TRUE(faults().empty());
   RateCommander panel(law_.name(), "panel");
@@ -295,6 +296,22 @@ TEST_F(InForce, ADamagedRecordIsReportedAndCountsAsRateZero) {
   (void)operator_.set_rate(0.5, milliseconds(10));
   pass(milliseconds(50));
   EXPECT_EQ(rate(), 0.5);
+}
+
+TEST(CommandersOfALaw, ANewOneIsInForceAfterTheNextSweep) {
+  const testing::TestStream law;
+  testing::HostClock clock;
+  const RateCommander first(law.name(), "first");
+  ipc::StreamSweep sweep({law.name()}, {}, [](auto&&...) {});
+  const auto step = [&] {
+    clock.advance(milliseconds(1));
+    (void)sweep.sweep(clock);
+  };
+  for (int i = 0; i < 200; ++i) step();
+  RateCommander panel(law.name(), "panel");
+  const auto request = panel.set_rate(0.5, milliseconds(10));
+  step();
+  EXPECT_TRUE(panel.wait_in_force(request, Time::zero()));
 }
 
 TEST(CommandersOfALaw, BeyondTheSixteenthAreReported) {

@@ -1,11 +1,14 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/inotify.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <memory>
 #include <set>
 #include <string>
+#include <system_error>
 
 #include "ipc/memory/names.hpp"
 #include "ipc/memory/region_watch.hpp"
@@ -52,16 +55,12 @@ class ARegionWatch : public ::testing::TestWithParam<bool> {
 
   Names names() {
     watch_->look();
-    return names_of(law_.name());
+    return watch_->commanders_of(law_.name());
   }
   /// Without events a change is noticed at the next look at the folder's time.
   bool become(const Names& expected) {
     if (GetParam()) return names() == expected;
     return await([&] { return names() == expected; });
-  }
-  Names names_of(const std::string& law) {
-    const auto found = watch_->commanders().find(law);
-    return found != watch_->commanders().end() ? found->second : Names{};
   }
 };
 
@@ -79,7 +78,7 @@ TEST_P(ARegionWatch, KnowsTheNamesThatAreThereComeAndGo) {
   EXPECT_EQ(names(), (Names{"comes", "there"}));  // its region stays
   unlink(region_path(commander_stream(law_.name(), "comes"), RegionKind::commander).c_str());
   EXPECT_TRUE(become({"there"}));
-  EXPECT_EQ(names_of(other_.name()), (Names{"elsewhere"}));
+  EXPECT_EQ(watch_->commanders_of(other_.name()), (Names{"elsewhere"}));
 }
 
 TEST_P(ARegionWatch, NoticesARegionThatIsReplaced) {
@@ -113,6 +112,29 @@ TEST_P(ARegionWatch, KnowsTheStreamsThatHaveARing) {
   EXPECT_NE(watch_->version(), before);
   producer.withdraw();
   EXPECT_TRUE(await([&] { return !has(); }));
+}
+
+/// Replaces each event queue of this process by one that watches nothing.
+void make_events_stop() {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code error;
+    if (std::filesystem::read_symlink(entry.path(), error) != "anon_inode:inotify") continue;
+    const int empty = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+    ASSERT_GE(dup2(empty, std::stoi(entry.path().filename())), 0);
+    close(empty);
+  }
+}
+
+TEST(RegionWatchWithoutEvents, NoticesByTheFoldersTimeThatNoneArrive) {
+  const TestStream law;
+  RegionWatch watch;
+  watch.look();
+  make_events_stop();
+  const RateCommander comes(law.name(), "comes");
+  EXPECT_TRUE(await([&] {
+    watch.look();
+    return watch.commanders_of(law.name()).contains("comes");
+  }));
 }
 
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutEvents, ARegionWatch, ::testing::Bool(),

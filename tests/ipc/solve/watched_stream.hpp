@@ -60,7 +60,7 @@ struct Watched : LiveStream {
     const Summary before = solver.summary();
     solver.step(clock);
     EXPECT_LE(solver.summary().revision, before.revision + 1);
-    // What is withdrawn is so in the revision of the replacement.
+    // Only a revision that takes a replacement withdraws items.
     EXPECT_TRUE(solver.summary().withdrawn == before.withdrawn ||
                 solver.summary().controls > before.controls);
     is_searching = solver.due() <= clock.time;
