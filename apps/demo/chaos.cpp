@@ -199,7 +199,7 @@ class Chaos {
         {"interpolated", summary_.interpolated()},
         {"passed_over", summary_.passed_over},
         {"refused", summary_.refused},
-        {"withdrawn", summary_.withdrawn},
+        {"withdrawn", summary_.all_withdrawn()},
         {"replacements", std::max<ipc::Word>(summary_.controls, 1) - 1},
         {"underruns", summary_.underruns},
         {"deadline_misses", summary_.deadline_misses},

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "apps/output/stream.hpp"
 #include "apps/process/child.hpp"
 #include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
 #include "apps/replay/player.hpp"
 #include "apps/streams/remover.hpp"
@@ -22,6 +24,8 @@
 #include "apps/streams/solve.hpp"
 #include "apps/tables/table_rows.hpp"
 #include "apps/trials/judgement.hpp"
+#include "ipc/mapping/region.hpp"
+#include "splinecast/rate_commander.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -39,6 +43,7 @@ struct DemoOptions {
   std::string file;
   TableOptions table;
   std::optional<Time> seconds;
+  std::string law;  ///< that the stream follows
   bool chaos = false;
   bool json = false;
 };
@@ -122,6 +127,39 @@ int run_chaos_demo(const DemoOptions& options, const std::string& stream) {
   return print_judgement(run, options.json, chaos_summary, kFellShort);
 }
 
+/// The time law of a demo. Made here, at rate 1, unless a solver has begun it.
+class DemoLaw {
+ public:
+  explicit DemoLaw(const std::string& law) {
+    if (law.empty() || ipc::region_exists(law, ipc::RegionKind::spline)) return;
+    made_.push_back(law);
+    commander_.emplace(law, "demo").set_rate(1, std::chrono::milliseconds(100));
+    say(fmt::format("'splinecast rate {} 0.3' in another terminal slows the motion down", law));
+  }
+  /// What the demo solves, with its stream.
+  [[nodiscard]] std::vector<std::string> with(const std::string& stream) const {
+    std::vector<std::string> all{stream};
+    all.insert(all.end(), made_.begin(), made_.end());
+    return all;
+  }
+  void end() { commander_.reset(); }
+
+ private:
+  std::vector<std::string> made_;
+  std::optional<RateCommander> commander_;
+};
+
+void print_demo(const DemoOptions& options, const WaypointTable& table, const json& sent,
+                const std::vector<json>& seen) {
+  const json read = merged(seen);
+  if (!options.json) return print_report(summary(table, sent, read));
+  const json all{{"interrupted", stop_requested()},
+                 {"waypoints", sent},
+                 {"readers", seen},
+                 {"all_readers", read}};
+  print_report(all.dump(2) + "\n");
+}
+
 int run_demo(const DemoOptions& options) {
   const std::string stream = fmt::format("demo.{}", getpid());
   if (options.chaos) return run_chaos_demo(options, stream);
@@ -130,13 +168,18 @@ int run_demo(const DemoOptions& options) {
                             : read_waypoints(options.file, options.table);
   ReplayOptions replay{.stream = stream, .start_from = FromFirst{}};
   if (!options.file.empty()) replay.duration = options.seconds;
+  if (!options.law.empty()) {
+    replay.law = options.law;
+    replay.clock = StreamClock::law;
+  }
   RefusedRows refused;
   Recording recording(std::make_unique<TableRows>(table), table.kinds, preparation_of(replay),
                       nullptr);
 
   catch_stop_signals();
-  const StreamRemover remover({stream});
-  Child solver([&] { return json(run_solve({.wanted = {stream}, .quiet = true})); });
+  DemoLaw law(options.law);
+  const StreamRemover remover(law.with(stream));
+  Child solver([&] { return json(run_solve({.wanted = law.with(stream), .quiet = true})); });
   std::vector<Child> readers;
   for (std::size_t r = 0; r < kReaders; ++r) {
     readers.emplace_back([&] { return run_demo_reader(stream); });
@@ -149,16 +192,8 @@ int run_demo(const DemoOptions& options) {
   for (Child& reader : readers) seen.push_back(reader.result());
   solver.stop();
   solver.result();
-  const json read = merged(seen);
-  if (options.json) {
-    const json all{{"interrupted", stop_requested()},
-                   {"waypoints", sent},
-                   {"readers", seen},
-                   {"all_readers", read}};
-    print_report(all.dump(2) + "\n");
-  } else {
-    print_report(summary(table, sent, read));
-  }
+  law.end();
+  print_demo(options, table, sent, seen);
   if (stop_requested()) throw Interrupted("interrupted");
   return sent["exit_code"].get<int>();
 }
@@ -173,10 +208,14 @@ void add_demo(Command& verb, Action& action) {
       verb, "--seconds", options->seconds,
       "Length to play in s, 0.1 to 3600, with --chaos up to 86400 (default 10, or the whole file)",
       {kShortest, kLongestChaos});
+  const Argument law = verb.option("--law", options->law,
+                                   "Time law that the stream follows; it is made if there is none")
+                           .type("LAW");
   verb.flag("--chaos", options->chaos,
             "Kill, pause and starve the processes while the readers check every sample; exit code "
             "3 if a check fails")
-      .excludes(file);
+      .excludes(file)
+      .excludes(law);
   verb.flag("--json", options->json, "Print JSON");
   add_table_options(verb, options->table);
   verb.callback([&action, options] {

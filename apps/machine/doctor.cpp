@@ -17,6 +17,7 @@
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/waypoint_items.hpp"
+#include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
 #include "ipc/options/stream.hpp"

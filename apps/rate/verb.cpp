@@ -19,7 +19,9 @@
 #include "apps/streams/report.hpp"
 #include "core/laws/rate_plan.hpp"
 #include "ipc/law/follower.hpp"
+#include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
+#include "ipc/options/stream.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/rate_commander.hpp"
@@ -53,6 +55,27 @@ struct RateOptions {
     return state.name == commander;
   }
 };
+
+/// Throws BadRequest if another stream than a law has the name: says how to get a law.
+void require_law(const RateOptions& options) {
+  std::optional<ipc::RegionHeader> header;
+  try {
+    header = ipc::peek_header(options.law, ipc::RegionKind::waypoints, options.trust);
+  } catch (const StreamError&) {
+    return;  // there is none yet, or it is not this user's: what follows reports it
+  }
+  if (!header || header->is_law != 0) return;
+  if (header->law_id != 0) {
+    throw BadRequest(fmt::format("'{0}' is not a time law, but follows one: `splinecast rate {1}`",
+                                 options.law, ipc::text_of(header->law)));
+  }
+  throw BadRequest(fmt::format(
+      "'{0}' is a stream without a time law. Its producer names one when it creates the "
+      "stream: `splinecast replay FILE --stream {0} --law {0}.law`, or "
+      "ProducerOptions::law; `splinecast solve {0} {0}.law` solves both. "
+      "`splinecast stop {0}` stops it without a law",
+      options.law));
+}
 
 /// The law as published, if a solver has begun it.
 std::unique_ptr<ipc::LawFollower> open_law(const RateOptions& options) {
@@ -337,6 +360,7 @@ void add_rate(Command& verb, Action& action) {
     action = [options] {
       ipc::require_stream_name(options->law);
       ipc::require_stream_name(options->commander);
+      require_law(*options);
       if (!options->rate && !options->release) return show(*options);
       catch_stop_signals();
       return command(*options);

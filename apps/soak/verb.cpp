@@ -176,7 +176,7 @@ class Soak {
       sum.knots += summary.knots;
       sum.passed_over += summary.passed_over;
       sum.refused += summary.refused;
-      sum.withdrawn += summary.withdrawn;
+      sum.withdrawn += summary.all_withdrawn();
       sum.controls += summary.controls;
       sum.underruns += summary.underruns;
       sum.deadline_misses += summary.deadline_misses;

@@ -95,6 +95,15 @@ ordered_json excesses_json(const ipc::StreamInfo& info) {
   return list;
 }
 
+/// The stoppers of the stream, by its board.
+ordered_json stoppers_json(const ipc::StreamInfo& info) {
+  ordered_json list = ordered_json::array();
+  for (const ipc::StopperEntry& stopper : info.stoppers) {
+    list.push_back({{"name", stopper.name}, {"request", stopper.number}, {"holds", stopper.holds}});
+  }
+  return list;
+}
+
 /// Whether the curve follows its waypoints; null unless it must keep its limits.
 ordered_json following_json(const ipc::StreamInfo& info) {
   const ipc::Summary& summary = info.summary;
@@ -198,13 +207,14 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"excesses", excesses_json(info)},
       {"worst_excess", info.worst_excess ? excess_json(*info.worst_excess) : ordered_json()},
       {"following", following_json(info)},
+      {"stoppers", stoppers_json(info)},
       {"first_segment", summary.first},
       {"newest_segment", summary.newest},
       {"settled_until_ns",
        has_settled ? ordered_json(summary.settled_until.count()) : ordered_json()},
       {"newest_knot_ns", summary.newest_time.count()},
       {"committed_ns", summary.committed.count()},
-      {"withdrawn", summary.withdrawn},
+      {"withdrawn", summary.all_withdrawn()},
       {"controls", summary.controls},
       {"depth_ns", depth(info)},
       {"low_water_ns", has_low_water ? ordered_json(summary.low_water.count()) : ordered_json()},

@@ -9,6 +9,7 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
+#include "apps/streams/holders.hpp"
 #include "ipc/law/effect.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
@@ -51,6 +52,17 @@ void require_without_followers(const std::string& stream, const Trust& trust) {
       stream, fmt::join(followers, "', '")));
 }
 
+/// Reports the stops that remain in force for a stream of this name.
+void report_holders(const std::string& stream, const Trust& trust) {
+  const Holders holders = holders_by_stream(trust);
+  const auto own = holders.find(stream);
+  if (own == holders.end()) return;
+  say(
+      fmt::format("'{0}': a stream of this name will be stopped by {1}: `splinecast stop {0} "
+                  "--release --as NAME` withdraws that",
+                  stream, quoted(own->second)));
+}
+
 void add_rm(Command& verb, Action& action) {
   struct Options {
     std::vector<std::string> streams;
@@ -74,6 +86,7 @@ void add_rm(Command& verb, Action& action) {
                             if (!wait_for_rest(stream, options->trust)) return kInterrupted;
                           }
                           remove_stream(stream, options->trust);
+                          report_holders(stream, options->trust);
                           return kOk;
                         }));
       }

@@ -17,7 +17,8 @@ inline constexpr int kTails = SPLINECAST_TAIL_CLAMPED + 1;
 inline constexpr int kClocks = SPLINECAST_CLOCK_LAW + 1;
 inline constexpr int kWaitStatuses = SPLINECAST_WAIT_RETIRED + 1;
 
-static_assert(SPLINECAST_APPEND_ELSEWHERE + 1 == kAppendStatuses);
+static_assert(SPLINECAST_APPEND_STOPPED + 1 == kAppendStatuses);
+static_assert(SPLINECAST_APPEND_ELSEWHERE == static_cast<int>(AppendStatus::elsewhere));
 static_assert(SPLINECAST_APPEND_FINISHED == static_cast<int>(AppendStatus::finished));
 static_assert(SPLINECAST_APPEND_FULL == static_cast<int>(AppendStatus::full));
 static_assert(SPLINECAST_APPEND_PAST == static_cast<int>(AppendStatus::past));
@@ -30,7 +31,8 @@ static_assert(SPLINECAST_APPEND_TOO_LATE == static_cast<int>(AppendStatus::too_l
 static_assert(SPLINECAST_APPEND_TOO_MANY == static_cast<int>(AppendStatus::too_many));
 static_assert(SPLINECAST_APPEND_ALREADY_STARTED == static_cast<int>(AppendStatus::already_started));
 
-static_assert(SPLINECAST_REFUSAL_CANNOT_FOLLOW + 1 == kRefusals);
+static_assert(SPLINECAST_REFUSAL_STOPPED + 1 == kRefusals);
+static_assert(SPLINECAST_REFUSAL_CANNOT_FOLLOW == static_cast<int>(Refusal::cannot_follow));
 static_assert(SPLINECAST_REFUSAL_BEYOND_LIMITS == static_cast<int>(Refusal::beyond_limits));
 static_assert(SPLINECAST_REFUSAL_PAST == static_cast<int>(Refusal::past));
 static_assert(SPLINECAST_REFUSAL_DUPLICATE == static_cast<int>(Refusal::duplicate));

@@ -13,13 +13,17 @@ namespace splinecast::ipc {
 namespace {
 
 splinecast_refusal refusal_of(const ItemRefusal& refusal) noexcept {
-  return {.item = refusal.item,
-          .time = refusal.time ? refusal.time->count() : 0,
-          .reason = static_cast<int>(refusal.reason),
-          .has_time = refusal.time ? 1 : 0,
-          .has_excess = refusal.excess ? 1 : 0,
-          .reserved = 0,
-          .excess = refusal.excess ? limit_excess_of(*refusal.excess) : splinecast_limit_excess{}};
+  splinecast_refusal out{
+      .item = refusal.item,
+      .time = refusal.time ? refusal.time->count() : 0,
+      .reason = static_cast<int>(refusal.reason),
+      .has_time = refusal.time ? 1 : 0,
+      .has_excess = refusal.excess ? 1 : 0,
+      .reserved = 0,
+      .excess = refusal.excess ? limit_excess_of(*refusal.excess) : splinecast_limit_excess{},
+      .by = {}};
+  std::memcpy(out.by, refusal.by.data(), std::min(refusal.by.size(), sizeof out.by - 1));
+  return out;
 }
 
 }  // namespace
@@ -55,6 +59,7 @@ ItemRefusal read_refusal(const splinecast_refusal& given) {
   if (require_flag(given.has_excess, "refusal->has_excess")) {
     refusal.excess = read_excess(given.excess, "refusal->excess");
   }
+  refusal.by.assign(given.by, strnlen(given.by, sizeof given.by));
   return refusal;
 }
 

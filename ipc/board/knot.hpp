@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -20,7 +21,8 @@ struct KnotNote {
   bool arrives = false;         ///< has the acceleration at which the segment before it ends
   bool starts = false;          ///< has the acceleration at which its own segment begins
   std::uint32_t newer_knots{};  ///< number of newer knots when it was last solved: 0 … 127
-  bool is_corner = false;       ///< its segment begins at rest, although the one before it moves
+  bool is_corner = false;       ///< its segment begins at rest, although the one before it moves;
+                                ///< or a stopper's stop begins here
 };
 
 /// A knot as a revision writes it. Spans hold one value per dimension.
@@ -68,6 +70,19 @@ class KnotCopy {
   }
   [[nodiscard]] core::SegmentEnd end() const noexcept {
     return {time, waypoint(), velocity(), acceleration(), residual()};
+  }
+
+  /// Whether a stop that a stopper requested begins here: then `item` says which.
+  [[nodiscard]] bool begins_stoppers_stop() const noexcept {
+    return note.form == core::SegmentForm::stop && note.is_corner && item > 0;
+  }
+  /// Whether a run begins here at rest, although the segment before it moves.
+  [[nodiscard]] bool begins_at_rest() const noexcept {
+    const auto is_zero = [](std::span<const double> values) {
+      return std::ranges::all_of(values, [](double value) { return value == 0; });
+    };
+    return note.is_corner &&
+           (!begins_stoppers_stop() || (is_zero(velocity()) && is_zero(acceleration())));
   }
 
   Word tag = 0;          ///< of the cell that it was copied from; 0: nothing copied

@@ -26,8 +26,10 @@ KnotBoardReader::KnotBoardReader(std::span<const std::byte> region,
       worst_(words_at(region, layout.worst, kExcessWords)),
       outcomes_(words_at(region, layout.outcomes, kOutcomesKept * kOutcomeWords)),
       times_(words_at(region, layout.times, layout.capacity)),
-      tables_(layout.commanders > 0 ? words_at(region, layout.commanders, 2 * kCommanderTableWords)
-                                    : std::span<const Word>{}),
+      commanders_(layout.commanders > 0
+                      ? words_at(region, layout.commanders, 2 * kCommanderTableWords)
+                      : std::span<const Word>{}),
+      stoppers_(words_at(region, layout.stoppers, 2 * kStopperTableWords)),
       slots_(words_at(region, layout.slots,
                       (layout.capacity + kPassedSlots) * layout.stride / sizeof(Word))) {}
 

@@ -11,10 +11,10 @@
 #include "ipc/board/outcome_record.hpp"
 #include "ipc/board/refused_item.hpp"
 #include "ipc/layout/board_control.hpp"
-#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/common_control.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/publication.hpp"
+#include "ipc/layout/request_control.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/memory/word.hpp"
 #include "splinecast/status.hpp"
@@ -97,7 +97,19 @@ class KnotBoardReader {
   /// Copies the table of a law's commanders of the newest revision, in a bounded number of tries.
   /// Returns false if there is no revision, if the writer overtook every try, or on the board of
   /// another stream; then `out` is not valid.
-  [[nodiscard]] bool copy_commanders(std::span<Word, kCommanderTableWords> out) const noexcept;
+  [[nodiscard]] bool copy_commanders(std::span<Word, kCommanderTableWords> out) const noexcept {
+    return copy_table(commanders_, out);
+  }
+
+  /// The same for the table of the stream's stoppers, which each board has.
+  [[nodiscard]] bool copy_stoppers(std::span<Word, kStopperTableWords> out) const noexcept {
+    return copy_table(stoppers_, out);
+  }
+
+  /// How many stoppers hold the stream.
+  [[nodiscard]] Word holders() const noexcept {
+    return load(control_[kHolders], std::memory_order_relaxed);
+  }
 
   /// Copies knot `number`, which must be on the board under r. On failure `out.tag` is 0 and the
   /// rest is not valid. O(D).
@@ -191,6 +203,7 @@ class KnotBoardReader {
   [[nodiscard]] SlotView<const Word> summary_cells() const noexcept {
     return {control_.data() + kSummarySlot, kSummaryWords};
   }
+  [[nodiscard]] bool copy_table(std::span<const Word> tables, std::span<Word> out) const noexcept;
   [[nodiscard]] Time earliest_change(Word seen, Word r) const noexcept;
 
   BoardLayout layout_;
@@ -202,7 +215,8 @@ class KnotBoardReader {
   std::span<const Word> worst_;
   std::span<const Word> outcomes_;
   std::span<const Word> times_;
-  std::span<const Word> tables_;  ///< of a law: both tables of commanders
+  std::span<const Word> commanders_;  ///< of a law: both tables of commanders
+  std::span<const Word> stoppers_;    ///< both tables of stoppers
   std::span<const Word> slots_;
 };
 

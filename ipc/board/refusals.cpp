@@ -11,6 +11,8 @@ namespace {
 
 constexpr unsigned kRefusalItemShift = 8;
 constexpr Word kByteMask = 0xff;
+/// The last byte of a refusal as `stopped`, plus the stopper's slot.
+constexpr Word kStoppedBySlot = 128;
 
 /// Stores an excess. Word 0 comes last, and is 0 meanwhile.
 void put_excess(const LimitExcess& excess, std::span<Word> words) noexcept {
@@ -45,8 +47,10 @@ std::optional<LimitExcess> copy_excess(std::span<const Word> words) noexcept {
 
 void KnotBoardWriter::write_refusal(Word index, const RefusedItem& refusal) noexcept {
   // One word, so that it is never torn; published by the commit of the summary that counts it.
-  put(refusals_[index % kRefusalsKept],
-      refusal.item << kRefusalItemShift | static_cast<Word>(refusal.reason));
+  const bool is_stopped = refusal.reason == Refusal::stopped;
+  const Word reason =
+      is_stopped ? kStoppedBySlot + refusal.slot : static_cast<Word>(refusal.reason);
+  put(refusals_[index % kRefusalsKept], refusal.item << kRefusalItemShift | reason);
 }
 
 void KnotBoardWriter::write_excess(Word index, const LimitExcess& excess) noexcept {
@@ -59,7 +63,12 @@ void KnotBoardWriter::write_worst_excess(const LimitExcess& excess) noexcept {
 
 RefusedItem KnotBoardReader::refusal(Word index) const noexcept {
   const Word word = load(refusals_[index % kRefusalsKept], std::memory_order_acquire);
-  return {.item = word >> kRefusalItemShift, .reason = static_cast<Refusal>(word & kByteMask)};
+  const Word item = word >> kRefusalItemShift;
+  const Word reason = word & kByteMask;
+  if (reason < kStoppedBySlot) return {.item = item, .reason = static_cast<Refusal>(reason)};
+  return {.item = item,
+          .reason = Refusal::stopped,
+          .slot = static_cast<std::uint8_t>(reason % kMostStoppers)};
 }
 
 std::size_t KnotBoardReader::copy_refusals(const Summary& summary, Word from,

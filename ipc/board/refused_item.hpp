@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "ipc/memory/word.hpp"
 #include "splinecast/status.hpp"
 
@@ -9,6 +11,7 @@ namespace splinecast::ipc {
 struct RefusedItem {
   Word item = 0;
   Refusal reason{};
+  std::uint8_t slot = 0;  ///< of the stopper, if it was refused as `stopped`
 };
 
 }  // namespace splinecast::ipc

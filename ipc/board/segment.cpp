@@ -183,7 +183,8 @@ void BoardSegment::copy_to(SegmentCopy& out) const {
     if (!right_.note.is_waypoint) out.origin.known = right_.item;
   }
   out.has_waypoint = left_.note.is_waypoint;
-  out.is_corner = left_.note.is_corner;
+  if (left_.begins_stoppers_stop()) out.origin.stopped_by = left_.item;
+  out.is_corner = left_.begins_at_rest();
   const auto coefficients =
       std::span(segment_.coefficients).first(static_cast<std::size_t>(segment_.order) * dimensions);
   out.coefficients.assign(coefficients.begin(), coefficients.end());

@@ -115,16 +115,16 @@ bool KnotBoardReader::copy_newest_summary(Summary& out) const noexcept {
   return false;
 }
 
-bool KnotBoardReader::copy_commanders(std::span<Word, kCommanderTableWords> out) const noexcept {
+bool KnotBoardReader::copy_table(std::span<const Word> tables, std::span<Word> out) const noexcept {
   constexpr int kTries = 16;
-  for (int attempt = 0; attempt < kTries && !tables_.empty(); ++attempt) {
+  for (int attempt = 0; attempt < kTries && !tables.empty(); ++attempt) {
     const Word r = revision();
     const auto view = summary_cells();
     const Tags tags = view.tags(std::memory_order_acquire);
     if (r == 0 || !tags.holds_any(r)) continue;
     const std::size_t c = tags.newest(r);
     for (std::size_t i = 0; i < out.size(); ++i) {
-      out[i] = load(tables_[c * out.size() + i], std::memory_order_acquire);
+      out[i] = load(tables[c * out.size() + i], std::memory_order_acquire);
     }
     if (load(view.cell(c)[0], std::memory_order_relaxed) == tags.of[c]) return true;
   }

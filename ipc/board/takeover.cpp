@@ -11,9 +11,10 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
       worst_(words_at(region, layout.worst, kExcessWords)),
       outcomes_(words_at(region, layout.outcomes, kOutcomesKept * kOutcomeWords)),
       times_(words_at(region, layout.times, layout.capacity)),
-      tables_(layout.commanders > 0 ? words_at(region, layout.commanders, 2 * kCommanderTableWords)
-                                    : std::span<Word>{}),
-      table_(tables_.size() / 2),
+      commanders_(layout.commanders > 0
+                      ? words_at(region, layout.commanders, 2 * kCommanderTableWords)
+                      : std::span<Word>{}),
+      stoppers_(words_at(region, layout.stoppers, 2 * kStopperTableWords)),
       revision_(load(control_[kRevision], std::memory_order_relaxed)),
       settled_(load(control_[kSettledUntil], std::memory_order_relaxed)),
       late_(load(control_[kLate], std::memory_order_relaxed)),
@@ -46,19 +47,12 @@ void KnotBoardWriter::read_state() noexcept {
     }
   }
   summary_cell_ = summary_cells().tags(std::memory_order_relaxed).newest(revision_);
-  read_commanders();
+  commanders_.take_back(summary_cell_);
+  stoppers_.take_back(summary_cell_);
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const Tags tags = cells_at(i).tags(std::memory_order_relaxed);
     const std::size_t c = tags.newest(revision_);
     states_[i] = static_cast<SlotState>(tags.of[c] & kTagPartsMask) | (c == 0 ? 0 : kCellBit);
-  }
-}
-
-/// Loads the committed table of a law's commanders.
-void KnotBoardWriter::read_commanders() noexcept {
-  const auto words = tables_.subspan(summary_cell_ * table_.size(), table_.size());
-  for (std::size_t i = 0; i < table_.size(); ++i) {
-    table_[i] = load(words[i], std::memory_order_relaxed);
   }
 }
 
@@ -85,6 +79,7 @@ void KnotBoardWriter::restore_times() noexcept {
 
 void KnotBoardWriter::discard() noexcept {
   retire_uncommitted(summary_cells(), revision_);
+  stoppers_.take_back(summary_cell_);
   for (const WrittenSlot& slot : written()) {
     retire_uncommitted(cells_at(slot.index), revision_);
     states_[slot.index] &= ~kWrittenBit;

@@ -166,16 +166,8 @@ core::SegmentForm KnotBoardWriter::form(Word number) const noexcept {
 }
 
 void KnotBoardWriter::set_commanders(std::span<const Word> table) noexcept {
-  if (table.empty()) return read_commanders();
-  std::ranges::copy(table.first(table_.size()), table_.begin());
-}
-
-/// Stores those words of the table that differ from the cell's.
-void KnotBoardWriter::write_commanders(std::size_t cell) noexcept {
-  const auto words = tables_.subspan(cell * table_.size(), table_.size());
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (load(words[i], std::memory_order_relaxed) != table_[i]) put(words[i], table_[i]);
-  }
+  if (table.empty()) return commanders_.take_back(summary_cell_);
+  commanders_.set(table);
 }
 
 void KnotBoardWriter::commit(Summary& summary) noexcept {
@@ -191,7 +183,8 @@ void KnotBoardWriter::commit(Summary& summary) noexcept {
   // over, stored them before this revision's tag, and a reader that acquires that tag sees them.
   encode_changes(kSummaryRows, summary, held.data(),
                  [cell](std::size_t i, Word word) { put(cell[i], word); });
-  if (!table_.empty()) write_commanders(spare);
+  if (!commanders_.empty()) commanders_.write(spare);
+  stoppers_.write(spare);
   store(control_[kRevision], r, std::memory_order_release);  // W3
   revision_ = r;
   summary_cell_ = spare;

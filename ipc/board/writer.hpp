@@ -13,11 +13,12 @@
 #include "ipc/board/knot.hpp"
 #include "ipc/board/outcome_record.hpp"
 #include "ipc/board/refused_item.hpp"
+#include "ipc/board/table_cells.hpp"
 #include "ipc/layout/board_control.hpp"
-#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/common_control.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/publication.hpp"
+#include "ipc/layout/request_control.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/memory/word.hpp"
 #include "splinecast/time.hpp"
@@ -40,7 +41,10 @@
 /// - `late` and `checked`: stored after the commit, when it is known whether the commit was too
 ///   late: first `late`, if it was, then `checked`. If a writer dies before `checked`, its
 ///   successor decides about that revision. Others load them relaxed: each is independent.
-/// - The table of a law's commanders: a part of the summary's cell, as W2 and R3.
+/// - The tables of a law's commanders and of a stream's stoppers: parts of the summary's cell, as
+///   W2 and R3.
+/// - `holders`: stored after the commit whose table it counts, and again by a solver that takes
+///   over. The producer loads it relaxed: what it appends meanwhile is refused by the solver.
 /// - Packed times: relaxed. They are a hint, which a reader confirms by the knot.
 /// - Step times: relaxed. Each is independent.
 /// - Refusals: one word each, which is never torn, stored before W3 of the summary that counts it
@@ -136,6 +140,16 @@ class KnotBoardWriter {
   /// Sets the table of a law's commanders for the next revision: kCommanderTableWords words, or
   /// none to leave it as it is. Only for the board of a law.
   void set_commanders(std::span<const Word> table) noexcept;
+
+  /// Sets the table of the stream's stoppers for the next revision: kStopperTableWords words. The
+  /// last one that was set, or that an earlier writer committed, is next_stoppers().
+  void set_stoppers(std::span<const Word> table) noexcept { stoppers_.set(table); }
+  [[nodiscard]] std::span<const Word> next_stoppers() const noexcept { return stoppers_.next(); }
+
+  /// Stores how many stoppers hold the stream, for the producer.
+  void store_holders(Word holders) noexcept {
+    store(control_[kHolders], holders, std::memory_order_relaxed);
+  }
 
   /// Makes everything written visible, as the next revision: W3. Sets summary.revision.
   void commit(Summary& summary) noexcept;
@@ -268,8 +282,6 @@ class KnotBoardWriter {
     return std::span(written_).first(at_.written_count);
   }
   void note_time(Word number, Time time) noexcept;
-  void read_commanders() noexcept;
-  void write_commanders(std::size_t cell) noexcept;
   void read_state() noexcept;
   void restore_times() noexcept;
   void forget_written() noexcept {
@@ -286,8 +298,8 @@ class KnotBoardWriter {
   std::span<Word> worst_;
   std::span<Word> outcomes_;
   std::span<Word> times_;
-  std::span<Word> tables_;   ///< of a law: both tables of commanders
-  std::vector<Word> table_;  ///< of a law: the committed table, and until a commit the next one
+  TableCells commanders_;  ///< of a law
+  TableCells stoppers_;
   Word revision_;
   Word settled_;
   Word late_;

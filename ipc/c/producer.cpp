@@ -133,6 +133,16 @@ int splinecast_producer_elsewhere_message(splinecast_producer* producer,
   });
 }
 
+int splinecast_producer_stopped_by(splinecast_producer* producer, char* text, size_t capacity) {
+  return with(producer, [&](splinecast_producer& own) {
+    std::string names;
+    for (const std::string& name : own.producer.stopped_by()) {
+      names.append(names.empty() ? "" : ", ").append(name);
+    }
+    return put_text(names, text, capacity);
+  });
+}
+
 int splinecast_producer_finish(splinecast_producer* producer, const splinecast_condition* end) {
   return with(producer, [&](splinecast_producer& own) {
     if (end == nullptr) {

@@ -171,7 +171,8 @@ typedef enum splinecast_append_status {
   SPLINECAST_APPEND_FINISHED,         ///< the stream has been finished
   SPLINECAST_APPEND_CANNOT_FOLLOW,    ///< no waypoint met for 3 s, and the curve moves until then
   SPLINECAST_APPEND_TOO_FAR_AHEAD,    ///< live, without a law: more than the horizon after now
-  SPLINECAST_APPEND_ELSEWHERE         ///< live: not where an earlier stream has left the machine
+  SPLINECAST_APPEND_ELSEWHERE,        ///< live: not where an earlier stream has left the machine
+  SPLINECAST_APPEND_STOPPED           ///< live: a stopper holds the stream
 } splinecast_append_status;
 
 /// Why the solver refused an item that the ring had accepted.
@@ -190,7 +191,8 @@ typedef enum splinecast_refusal_reason {
   SPLINECAST_REFUSAL_LAG_TOO_SHORT = 12,      ///< for λ with waypoints this close
   SPLINECAST_REFUSAL_ZERO_QUATERNION = 13,
   SPLINECAST_REFUSAL_BEYOND_LIMITS = 14,  ///< the curve would exceed a limit
-  SPLINECAST_REFUSAL_CANNOT_FOLLOW = 15   ///< none met for 3 s, and no entry leads to it
+  SPLINECAST_REFUSAL_CANNOT_FOLLOW = 15,  ///< none met for 3 s, and no entry leads to it
+  SPLINECAST_REFUSAL_STOPPED = 16         ///< a stopper held the stream
 } splinecast_refusal_reason;
 
 /// What became of an item that the ring has accepted.
@@ -386,6 +388,8 @@ typedef struct splinecast_refusal {
   int has_excess;                  ///< 0 or 1: `beyond_limits`, while the board has the excess
   int reserved;                    ///< 0
   splinecast_limit_excess excess;  ///< if `has_excess`
+  char by[40];                     ///< of `stopped`: a stopper's name, or its first 32 bytes; "":
+                                   ///< the board no longer has it
 } splinecast_refusal;
 
 /// The outcome of an item.
@@ -553,6 +557,11 @@ SPLINECAST_API int splinecast_producer_old_end(splinecast_producer* producer, in
 SPLINECAST_API int splinecast_producer_elsewhere_message(splinecast_producer* producer,
                                                          const splinecast_waypoint* first,
                                                          char* text, size_t capacity);
+
+/// Writes the names of the stoppers that hold the stream, separated by ", ", as
+/// splinecast_refusal_message does; "" if there is none. Reads the board.
+SPLINECAST_API int splinecast_producer_stopped_by(splinecast_producer* producer, char* text,
+                                                  size_t capacity);
 
 /// Ends the stream at its last waypoint, with this condition; NULL: a full stop. A live stream
 /// needs `clamped` or `halt`. Returns a splinecast_append_status. Allocates if the condition has
@@ -940,6 +949,52 @@ SPLINECAST_API int splinecast_rate_commander_number(splinecast_rate_commander* c
                                                     uint64_t* number);
 SPLINECAST_API int splinecast_rate_commander_wait_in_force(splinecast_rate_commander* commander,
                                                            uint64_t number, int64_t timeout);
+
+// --------------------------------------------------------------------------------------- stopper
+
+/// Stops a live stream from any process: a latched stop. The next step of the solver begins a stop
+/// at the settled time, and then refuses waypoints, start states and replacements as `stopped`
+/// until all stoppers of the stream have released it. The request stays in force when the handle or
+/// its process ends, when the solver ends, and when the stream is created again. It may be made
+/// before there is a stream. It is not a safety function.
+typedef struct splinecast_stopper splinecast_stopper;
+
+/// Access to the stopper's files.
+typedef struct splinecast_stopper_options {
+  size_t size;
+  int64_t group;      ///< group of the regions; −1: this process's
+  int64_t owner;      ///< also trust regions of this user; −1: own user and root only
+  uint32_t mode;      ///< permission bits of the regions, up to 0777
+  uint32_t reserved;  ///< 0
+} splinecast_stopper_options;
+#define SPLINECAST_STOPPER_OPTIONS_INIT \
+  { sizeof(splinecast_stopper_options), -1, -1, 0600, 0 }
+
+/// Becomes the stopper of this name; it requests nothing until its first call, unless an earlier
+/// stopper of that name did. BUSY if the stream has a living stopper of that name. `options` NULL:
+/// the defaults. Writes the handle to `out`; NULL after an error. System calls; allocates.
+SPLINECAST_API int splinecast_stopper_create(const char* stream, const char* stopper,
+                                             const splinecast_stopper_options* options,
+                                             splinecast_stopper** out);
+
+/// Destroys a handle; does not release the stream. NULL has no effect. System calls.
+SPLINECAST_API int splinecast_stopper_destroy(splinecast_stopper* stopper);
+
+/// stop requests that the stream stop, and stay; release withdraws that. Neither waits for the
+/// solver, and both do nothing if that is requested already. Two system calls.
+SPLINECAST_API int splinecast_stopper_stop(splinecast_stopper* stopper);
+SPLINECAST_API int splinecast_stopper_release(splinecast_stopper* stopper);
+
+/// Returns 1 if this stopper, or an earlier one of its name, requests the stop; else 0.
+SPLINECAST_API int splinecast_stopper_is_latched(splinecast_stopper* stopper);
+
+/// The number of the last request of this handle; 0: none yet. wait_in_force waits until the
+/// stream's solver has committed the request of this number, or a later one. Returns 1, or 0 if it
+/// has not after `timeout`: the request remains. 1 also if the stream has been finished before: its
+/// last motion is not stopped.
+SPLINECAST_API int splinecast_stopper_number(splinecast_stopper* stopper, uint64_t* number);
+SPLINECAST_API int splinecast_stopper_wait_in_force(splinecast_stopper* stopper, uint64_t number,
+                                                    int64_t timeout);
 
 // ------------------------------------------------------------------------------------- batch fit
 

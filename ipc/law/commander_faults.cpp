@@ -1,20 +1,16 @@
 #include "ipc/law/commander_faults.hpp"
 
-#include <algorithm>
-#include <iterator>
-#include <utility>
-
 #include "core/basics/number_text.hpp"
 
 namespace splinecast::ipc {
 
-void CommanderFaults::look(const Commanders& commanders, const CommandedRate& rate,
-                           double largest) {
+std::set<std::string> faults_of(const Commanders& commanders, const CommandedRate& rate,
+                                double largest) {
   std::set<std::string> present;
   const auto note = [&](bool is_so, const CommanderState& state, const std::string& text) {
     if (is_so) present.insert("commander '" + state.name + "' " + text);
   };
-  for (const UnusableCommander& unusable : commanders.unusable()) {
+  for (const RequestRegions::Unusable& unusable : commanders.unusable()) {
     present.insert("commander '" + unusable.name + "' is not heard: " + unusable.why);
   }
   for (const CommanderState& state : commanders.states()) {
@@ -29,15 +25,7 @@ void CommanderFaults::look(const Commanders& commanders, const CommandedRate& ra
          "requests rate " + core::number_text(state.command.rate) +
              ", which counts as the largest, " + core::number_text(largest));
   }
-  for (const std::string& text : present) {
-    if (!present_.contains(text)) new_.push_back(text);
-  }
-  present_ = std::move(present);
-}
-
-void CommanderFaults::take(std::vector<std::string>& out) {
-  std::ranges::move(new_, std::back_inserter(out));
-  new_.clear();
+  return present;
 }
 
 }  // namespace splinecast::ipc

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "ipc/layout/header.hpp"
+#include "ipc/requests/record.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -32,28 +33,7 @@ std::optional<RateCommand> command_of(
 }
 
 void write_command(std::span<Word> control, const RateCommand& command) noexcept {
-  Word& sequence = control[kCommanderSequence];
-  const Word odd = load(sequence, std::memory_order_relaxed) | 1;
-  store(sequence, odd, std::memory_order_relaxed);
-  const auto words = words_of(command);
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    store(control[kCommanderNumber + i], words[i], std::memory_order_release);
-  }
-  store(sequence, odd + 1, std::memory_order_release);
-}
-
-CommandCopy copy_command(std::span<const Word> control) noexcept {
-  constexpr int kTries = 4;
-  CommandCopy copy;
-  for (int i = 0; i < kTries && !copy.is_whole; ++i) {
-    copy.sequence = load(control[kCommanderSequence], std::memory_order_acquire);
-    for (std::size_t k = 0; k < copy.words.size(); ++k) {
-      copy.words[k] = load(control[kCommanderNumber + k], std::memory_order_acquire);
-    }
-    copy.is_whole = copy.sequence % 2 == 0 &&
-                    load(control[kCommanderSequence], std::memory_order_relaxed) == copy.sequence;
-  }
-  return copy;
+  write_record(control, words_of(command));
 }
 
 }  // namespace splinecast::ipc

@@ -4,29 +4,11 @@
 #include <optional>
 #include <span>
 
-#include "ipc/layout/commander_control.hpp"
+#include "ipc/layout/request_control.hpp"
 #include "ipc/memory/word.hpp"
 #include "splinecast/time.hpp"
 
-/// The latest state of a law's commander, in its region: one record under a sequence counter.
-///
-/// One writer, any number of readers that store nothing. The sequence is even while the record is
-/// whole.
-///
-/// Q1 The writer stores the next odd sequence (relaxed), each word of the record (release), and the
-///    next even sequence (release). An earlier writer may have died in between: a sequence that is
-///    found odd stays odd while the words are written.
-/// Q2 A reader loads the sequence (acquire), each word of the record (acquire), and the sequence
-///    again (relaxed). The copy is whole iff both are the same even number.
-///
-/// Why: the first load acquires the last store of that sequence's writer, so each word is at least
-/// as new as that. A word of a later record is stored with release after its odd sequence; a reader
-/// that loads that word with acquire finds this sequence or a later one in its second load. A
-/// sequence repeats only after 2⁶³ requests.
-///
-/// Not enough (found by the model, tests/model/commander_record.pml): one sequence that is stored
-/// before the words only, or after them only; a reader that compares the sequences but takes an odd
-/// one.
+/// What a commander of a time law requests, as its region has it.
 namespace splinecast::ipc {
 
 /// Shortest and longest ramp, and dead man.
@@ -52,17 +34,7 @@ struct RateCommand {
 [[nodiscard]] std::optional<RateCommand> command_of(
     const std::array<Word, kCommanderRecordWords>& words) noexcept;
 
-/// Writes a command: Q1. `control` is the control block of the region. Wait-free.
+/// Writes a command to the control block of its region. Wait-free.
 void write_command(std::span<Word> control, const RateCommand& command) noexcept;
-
-/// A copy of a record: Q2.
-struct CommandCopy {
-  Word sequence = 0;
-  bool is_whole = false;  ///< no writer was seen in between
-  std::array<Word, kCommanderRecordWords> words{};
-};
-
-/// Copies the record in a bounded number of tries.
-[[nodiscard]] CommandCopy copy_command(std::span<const Word> control) noexcept;
 
 }  // namespace splinecast::ipc

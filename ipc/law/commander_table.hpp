@@ -7,7 +7,7 @@
 #include "core/laws/rate_curve.hpp"
 #include "core/laws/rate_plan.hpp"
 #include "ipc/law/commander_record.hpp"
-#include "ipc/layout/commander_control.hpp"
+#include "ipc/layout/request_control.hpp"
 #include "ipc/memory/word.hpp"
 #include "splinecast/time.hpp"
 

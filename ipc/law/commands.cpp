@@ -1,19 +1,16 @@
 #include "ipc/law/commands.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <thread>
 #include <utility>
 
-#include "ipc/layout/commander_control.hpp"
-#include "ipc/layout/common_control.hpp"
-#include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/memory/futex.hpp"
 #include "ipc/memory/names.hpp"
-#include "ipc/options/stream.hpp"
-#include "splinecast/errors.hpp"
+#include "ipc/requests/record.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -26,36 +23,20 @@ Time expiry_of(const RateCommand& command) noexcept {
 
 }  // namespace
 
-bool Commanders::has(const std::string& name) const noexcept {
-  return std::ranges::find(states_, name, &CommanderState::name) != states_.end();
+/// Gives each region its state: a new one nothing is known of yet.
+void Commanders::match_states() {
+  std::vector<CommanderState> states;
+  for (const RequestRegions::Source& source : regions_.sources()) {
+    const auto known = std::ranges::find(states_, source.id, &CommanderState::id);
+    states.push_back(known != states_.end() ? std::move(*known)
+                                            : CommanderState{.name = source.name, .id = source.id});
+  }
+  states_ = std::move(states);
 }
 
 void Commanders::look_around(bool needs_room) {
-  for (std::size_t i = sources_.size(); i-- > 0;) {
-    if (load(sources_[i].control[kRetired], std::memory_order_acquire) == 0) continue;
-    sources_.erase(sources_.begin() + std::ptrdiff_t(i));
-    states_.erase(states_.begin() + std::ptrdiff_t(i));
-  }
+  if (regions_.look_around()) match_states();
   look_for_life(needs_room);
-  if (!has_news() && unusable_.empty()) return;
-  unusable_.clear();
-  for (const std::string& name : watch_->commanders_of(law_)) {
-    if (has(name)) continue;
-    try {
-      const std::string stream = commander_stream(law_, name);
-      auto [region, header, layout] = open_commander(stream, false, trust_);
-      require_same_clock(header, stream);
-      region.close_descriptor();
-      const auto control = words_at(region.bytes(), layout.control, kCommanderControlWords);
-      sources_.push_back({.region = std::move(region), .control = control});
-      states_.push_back({.name = name, .id = header.stream_id});
-    } catch (const NoSuchStream&) {
-      continue;  // it was just removed
-    } catch (const StreamError& error) {
-      unusable_.push_back({.name = name, .why = error.what()});
-    }
-  }
-  seen_ = watch_->commanders_version();
 }
 
 /// Looks which of those that request nothing live.
@@ -64,37 +45,32 @@ void Commanders::look_for_life(bool needs_room) {
   if (looks_++ % kEvery != 0 && !needs_room) return;
   for (CommanderState& state : states_) {
     if (state.requests()) continue;
-    state.is_alive = owner_lives(commander_stream(law_, state.name), RegionKind::commander);
+    state.is_alive = owner_lives(regions_.stream_of(state.name), RegionKind::commander);
   }
 }
 
-bool Commanders::calls() const noexcept {
-  return has_news() || std::ranges::any_of(sources_, [](const Source& source) {
-           return load(source.control[kCommanderSequence], std::memory_order_seq_cst) !=
-                  source.seen;
-         });
-}
-
-void Commanders::read_newest(Source& source, CommanderState& state, Time now) noexcept {
+void Commanders::read_newest(RequestRegions::Source& source, CommanderState& state,
+                             Time now) noexcept {
   // A commander may read its clock after this process has.
   constexpr Time kMostAhead = std::chrono::seconds(1);
-  const CommandCopy copy = copy_command(source.control);
+  std::array<Word, kCommanderRecordWords> words{};
+  const RecordCopy copy = copy_record(source.control, words);
   source.seen = copy.sequence;
-  const bool is_first = copy.is_whole && copy.sequence == 0;  // nothing requested yet
-  const auto command = copy.is_whole ? command_of(copy.words) : std::nullopt;
+  const auto command = copy.is_whole ? command_of(words) : std::nullopt;
   if (command && command->time <= saturated_sum(now, kMostAhead)) {
     if (command->number != state.command.number) state.is_dead = false;
     state.command = *command;
-    source.damaged_since = Time::max();
-  } else if (!is_first) {
-    source.damaged_since = std::min(source.damaged_since, now);
+    state.damaged_since = Time::max();
+  } else if (!copy.is_unwritten()) {
+    state.damaged_since = std::min(state.damaged_since, now);
   }
-  state.is_damaged = now - kMostDamaged >= source.damaged_since;
+  state.is_damaged = now - kMostDamaged >= state.damaged_since;
   state.is_dead = state.is_dead || expiry_of(state.command) <= now;
 }
 
 void Commanders::read(Time now) {
-  for (std::size_t i = 0; i < sources_.size(); ++i) read_newest(sources_[i], states_[i], now);
+  const auto sources = regions_.sources();
+  for (std::size_t i = 0; i < sources.size(); ++i) read_newest(sources[i], states_[i], now);
 }
 
 core::RateRequest CommanderState::request(double largest, bool has_died) const noexcept {
@@ -116,9 +92,9 @@ void Commanders::wait(Time timeout) const noexcept {
   // There is one futex per region, and a thread can wait on one only.
   constexpr Time kSlice = std::chrono::milliseconds(1);
   if (calls()) return;
-  if (sources_.size() == 1) {
-    const Source& only = sources_.front();
-    wait_while_equal(only.control[kCommanderSequence], only.seen, timeout);
+  if (regions_.sources().size() == 1) {
+    const RequestRegions::Source& only = regions_.sources().front();
+    wait_while_equal(only.control[kRecordSequence], only.seen, timeout);
   } else {
     std::this_thread::sleep_for(std::min(timeout, kSlice));
   }
@@ -126,10 +102,10 @@ void Commanders::wait(Time timeout) const noexcept {
 
 Time Commanders::next_expiry() const noexcept {
   Time next = Time::max();
-  for (std::size_t i = 0; i < states_.size(); ++i) {
-    if (!states_[i].is_dead) next = std::min(next, expiry_of(states_[i].command));
-    if (states_[i].is_damaged || sources_[i].damaged_since == Time::max()) continue;
-    next = std::min(next, saturated_sum(sources_[i].damaged_since, kMostDamaged));
+  for (const CommanderState& state : states_) {
+    if (!state.is_dead) next = std::min(next, expiry_of(state.command));
+    if (state.is_damaged || state.damaged_since == Time::max()) continue;
+    next = std::min(next, saturated_sum(state.damaged_since, kMostDamaged));
   }
   return next;
 }

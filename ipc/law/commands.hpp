@@ -7,9 +7,9 @@
 
 #include "core/laws/rate_plan.hpp"
 #include "ipc/law/commander_record.hpp"
-#include "ipc/mapping/region.hpp"
 #include "ipc/memory/region_watch.hpp"
 #include "ipc/memory/word.hpp"
+#include "ipc/requests/regions.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/time.hpp"
 
@@ -25,6 +25,7 @@ struct CommanderState {
   bool is_dead = false;     ///< its dead man has expired: it requests rate 0 until a new request
   bool is_damaged = false;  ///< its region holds no whole request any more: it requests rate 0
   bool is_alive = true;     ///< its process lived when it was last looked at
+  Time damaged_since = Time::max();  ///< when its record was first found damaged
 
   /// Whether it requests a rate.
   [[nodiscard]] bool requests() const noexcept { return command.rate >= 0; }
@@ -38,12 +39,6 @@ struct CommanderState {
   }
 };
 
-/// A commander whose region cannot be used, and why.
-struct UnusableCommander {
-  std::string name;
-  std::string why;
-};
-
 /// The least rate that commanders request, at most `largest`; 1, or `largest` if that is less, if
 /// none requests one.
 [[nodiscard]] double least_rate(std::span<const CommanderState> states, double largest) noexcept;
@@ -54,27 +49,29 @@ class Commanders {
   /// `watch` knows the names of the commanders; it outlives this object, and its owner calls its
   /// look().
   Commanders(std::string law, const Trust& trust, const RegionWatch& watch)
-      : law_(std::move(law)), trust_(trust), watch_(&watch) {}
+      : regions_(std::move(law), RegionKind::commander, trust, watch.commanders()) {}
 
-  /// Whether a commander of any law has come or gone since the last look_around(). One load.
-  [[nodiscard]] bool has_news() const noexcept { return watch_->commanders_version() != seen_; }
+  /// Whether a commander of any law has come or gone since the last look_around(), or has not been
+  /// opened yet. One load.
+  [[nodiscard]] bool has_news() const noexcept { return regions_.has_untried(); }
 
-  /// Opens the regions of commanders that have come. Without any, no system call and no allocation.
-  /// In one of 50 calls, and if `needs_room`, some system calls for each commander that requests
-  /// nothing, to see whether its process lives. A region that cannot be used, or that has the clock
-  /// of another time namespace, is ignored, and tried again in the next call.
+  /// Opens the regions of commanders that have come: see RequestRegions. In one of 50 calls, and if
+  /// `needs_room`, some system calls for each commander that requests nothing, to see whether its
+  /// process lives.
   void look_around(bool needs_room = false);
 
-  [[nodiscard]] bool empty() const noexcept { return sources_.empty(); }
+  [[nodiscard]] bool empty() const noexcept { return states_.empty(); }
+
+  [[nodiscard]] const RequestRegions& regions() const noexcept { return regions_; }
 
   /// The commanders that the last look_around() found and could not use.
-  [[nodiscard]] const std::vector<UnusableCommander>& unusable() const noexcept {
-    return unusable_;
+  [[nodiscard]] const std::vector<RequestRegions::Unusable>& unusable() const noexcept {
+    return regions_.unusable();
   }
 
   /// Whether a commander has come, or given a command since the last read(). One load per
   /// commander.
-  [[nodiscard]] bool calls() const noexcept;
+  [[nodiscard]] bool calls() const noexcept { return regions_.calls(); }
 
   /// Reads what each commander requests. `now` decides which dead men have expired. A record that
   /// is torn or not valid leaves the last good one; after kMostDamaged the commander requests rate
@@ -95,25 +92,13 @@ class Commanders {
  private:
   static constexpr Time kMostDamaged{20'000'000};
 
-  /// The region of a commander.
-  struct Source {
-    Region region;
-    std::span<const Word> control;
-    Word seen = 0;                     ///< sequence of the record at the last read
-    Time damaged_since = Time::max();  ///< when a record was first found damaged
-  };
-  [[nodiscard]] bool has(const std::string& name) const noexcept;
+  void match_states();
   void look_for_life(bool needs_room);
-  static void read_newest(Source& source, CommanderState& state, Time now) noexcept;
+  static void read_newest(RequestRegions::Source& source, CommanderState& state, Time now) noexcept;
 
-  std::string law_;
-  Trust trust_;
-  const RegionWatch* watch_;
-  std::optional<Word> seen_{};               ///< version of the watch at the last look_around()
-  std::vector<UnusableCommander> unusable_;  ///< tried again in the next look_around()
-  int looks_ = 0;                            ///< calls of look_around()
-  std::vector<Source> sources_;
-  std::vector<CommanderState> states_;  ///< of each source
+  RequestRegions regions_;
+  int looks_ = 0;                       ///< calls of look_around()
+  std::vector<CommanderState> states_;  ///< of each region
 };
 
 }  // namespace splinecast::ipc

@@ -36,6 +36,12 @@ CheckedRegion<BoardLayout> open_law(const RegionHeader& stream, const Trust& tru
 
 }  // namespace
 
+RegionHeader header_of_law(const std::string& law, const Trust& trust) {
+  const auto header = peek_header(law, RegionKind::spline, trust);
+  if (header && header->is_law != 0) return *header;
+  throw NoSuchStream("there is no time law '" + law + "' with a solver");
+}
+
 LawFollower::LawFollower(const RegionHeader& stream, const Trust& trust)
     : LawFollower(open_law(stream, trust), text_of(stream.law)) {}
 

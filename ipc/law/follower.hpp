@@ -22,6 +22,9 @@
 
 namespace splinecast::ipc {
 
+/// The header of the board of a time law. Throws NoSuchStream if there is none.
+[[nodiscard]] RegionHeader header_of_law(const std::string& law, const Trust& trust);
+
 /// A time law at one instant of host time.
 struct LawPoint {
   Time stream{};  ///< stream time, rounded down to nanoseconds

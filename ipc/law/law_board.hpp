@@ -4,10 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "ipc/board/reader.hpp"
+#include "ipc/board/named_board.hpp"
 #include "ipc/law/commander_table.hpp"
-#include "ipc/layout/header.hpp"
-#include "ipc/mapping/region.hpp"
 #include "ipc/memory/word.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/time.hpp"
@@ -17,7 +15,7 @@ namespace splinecast::ipc {
 /// The commanders of a time law as its board has them: what is in force. One thread uses it.
 class LawBoard {
  public:
-  LawBoard(std::string law, const Trust& trust) : law_(std::move(law)), trust_(trust) {}
+  LawBoard(std::string law, const Trust& trust) : board_(std::move(law), trust) {}
 
   /// Looks whether there is a board with a revision, and opens it; opens it again if the law has
   /// been removed and recreated. A board that cannot be used counts as none. System calls unless
@@ -25,7 +23,7 @@ class LawBoard {
   [[nodiscard]] bool is_there() noexcept;
 
   /// The largest rate that the law can have.
-  [[nodiscard]] double largest_rate() const noexcept { return board_->header.largest_rate; }
+  [[nodiscard]] double largest_rate() const noexcept { return board_.header().largest_rate; }
 
   /// The row of the commander whose region has this id; nothing if there is none.
   [[nodiscard]] std::optional<CommanderEntry> commander(Word id) const noexcept;
@@ -38,15 +36,7 @@ class LawBoard {
   void wait(Time timeout) const noexcept;
 
  private:
-  struct Board {
-    Region region;
-    RegionHeader header;
-    KnotBoardReader reader;
-  };
-
-  std::string law_;
-  Trust trust_;
-  std::optional<Board> board_;
+  NamedBoard board_;
   mutable Word seen_ = 0;
 };
 

@@ -23,7 +23,11 @@ inline constexpr std::tuple kBoardControlRows{
              {.words = 1},
              FieldWriter::owner,
              "ns: no later revision changes the curve before this time"},
-    padding(kLineWords - 3),
+    FieldRow{"holders",
+             {.words = 1},
+             FieldWriter::owner,
+             "number of stoppers that hold the stream, for the producer"},
+    padding(kLineWords - 4),
     FieldRow{
         "consumed", {.words = 1}, FieldWriter::owner, "number of items consumed, for the producer"},
     FieldRow{"late",
@@ -55,6 +59,7 @@ inline constexpr auto kBoardControlFields = place(kBoardControlRows);
 inline constexpr std::size_t kBoardControlWords = size_of(kBoardControlFields).words;
 inline constexpr std::size_t kRevision = word_of(kBoardControlFields, "revision");
 inline constexpr std::size_t kSettledUntil = word_of(kBoardControlFields, "settled until");
+inline constexpr std::size_t kHolders = word_of(kBoardControlFields, "holders");
 inline constexpr std::size_t kConsumed = word_of(kBoardControlFields, "consumed");
 inline constexpr std::size_t kLate = word_of(kBoardControlFields, "late");
 inline constexpr std::size_t kChecked = word_of(kBoardControlFields, "checked");

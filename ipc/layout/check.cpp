@@ -181,9 +181,10 @@ BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_by
   return layout;
 }
 
-CommanderLayout checked_commander_layout(const RegionHeader& header, std::size_t real_bytes) {
-  require_region(header, RegionKind::commander, real_bytes);
-  const CommanderLayout layout{.control = header.control};
+RequestLayout checked_request_layout(const RegionHeader& header, RegionKind kind,
+                                     std::size_t real_bytes) {
+  require_region(header, kind, real_bytes);
+  const RequestLayout layout{.control = header.control};
   require(real_bytes == layout.bytes, "size", real_bytes, layout.bytes);
   return layout;
 }

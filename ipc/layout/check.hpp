@@ -2,10 +2,11 @@
 
 #include <cstddef>
 
-#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/request_control.hpp"
 #include "ipc/layout/waypoint_items.hpp"
+#include "ipc/memory/names.hpp"
 
 namespace splinecast::ipc {
 
@@ -14,6 +15,7 @@ namespace splinecast::ipc {
 /// `real_bytes` of the file.
 RingLayout checked_ring_layout(const RegionHeader& header, std::size_t real_bytes);
 BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_bytes);
-CommanderLayout checked_commander_layout(const RegionHeader& header, std::size_t real_bytes);
+RequestLayout checked_request_layout(const RegionHeader& header, RegionKind kind,
+                                     std::size_t real_bytes);
 
 }  // namespace splinecast::ipc

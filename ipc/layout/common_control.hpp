@@ -4,7 +4,7 @@
 
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/board_control.hpp"
-#include "ipc/layout/commander_control.hpp"
+#include "ipc/layout/request_control.hpp"
 #include "ipc/layout/ring_control.hpp"
 #include "ipc/layout/separation.hpp"
 #include "ipc/layout/table.hpp"
@@ -16,13 +16,15 @@ namespace splinecast::ipc {
 inline constexpr std::size_t kRetired = word_of(kBoardControlFields, "retired");
 static_assert(word_of(kRingControlFields, "retired") == kRetired);
 static_assert(word_of(kCommanderControlFields, "retired") == kRetired);
-static_assert(kRevision == 0 && kWritten == 0 &&
-              kCommanderSequence == 0);  // the words that processes wait on
+static_assert(word_of(kStopperControlFields, "retired") == kRetired);
+static_assert(kRevision == 0 && kWritten == 0 && kCommanderSequence == 0 &&
+              kStopperSequence == 0);  // the words that processes wait on
 
 /// Number of positions that the control block may have in the control area.
 inline constexpr std::size_t kControlPositions =
     (kBodyOffset - kHeaderBytes - kBoardControlWords * sizeof(Word)) / kSeparation + 1;
 static_assert(kRingControlWords <= kBoardControlWords);
 static_assert(kCommanderControlWords <= kBoardControlWords);
+static_assert(kStopperControlWords == kCommanderControlWords && kStopperControlWords == kLineWords);
 
 }  // namespace splinecast::ipc

@@ -41,8 +41,8 @@ inline constexpr double kLargestRate = 100;
 inline constexpr std::uint64_t kFormerRules = 1;
 inline constexpr std::uint64_t kRules = 2;
 
-/// The first words of each region, as kHeaderRows places them. A commander region has only those
-/// that every region needs: the others are 0.
+/// The first words of each region, as kHeaderRows places them. A commander or stopper region has
+/// only those that every region needs: the others are 0.
 struct RegionHeader {
   std::uint64_t magic = 0;
   LayoutMark mark;
@@ -99,7 +99,8 @@ inline constexpr std::tuple kHeaderRows{
         "layout hash", FieldWriter::maker,
         "64-bit FNV-1a of all names, offsets, sizes and writers on this page"},
     MemberRow<&RegionHeader::kind>{"kind", FieldWriter::maker,
-                                   "1 waypoints region, 2 spline region, 3 commander region"},
+                                   "1 waypoints region, 2 spline region, 3 commander region,\n"
+                                   "4 stopper region"},
     MemberRow<&RegionHeader::region_bytes>{"region bytes", FieldWriter::maker,
                                            "size of the file, in bytes"},
     MemberRow<&RegionHeader::stream_id>{"stream id", FieldWriter::maker,

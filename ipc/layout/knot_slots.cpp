@@ -3,7 +3,7 @@
 #include <span>
 
 #include "ipc/layout/areas.hpp"
-#include "ipc/layout/commander_control.hpp"
+#include "ipc/layout/request_control.hpp"
 #include "ipc/layout/separation.hpp"
 #include "ipc/memory/word.hpp"
 
@@ -25,6 +25,7 @@ BoardLayout BoardLayout::of(std::size_t dimensions, std::size_t capacity, std::s
       .excesses = kBodyOffset + word_of(kBodyFields, "excesses") * sizeof(Word),
       .worst = kBodyOffset + word_of(kBodyFields, "worst excess") * sizeof(Word),
       .outcomes = kBodyOffset + word_of(kBodyFields, "outcomes") * sizeof(Word),
+      .stoppers = kBodyOffset + word_of(kBodyFields, "stoppers") * sizeof(Word),
       .times = kBodyOffset + word_of(kBodyFields, "times") * sizeof(Word),
       .slots = 0,
       .cell = lines(kCellFields),

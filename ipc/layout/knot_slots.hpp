@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <tuple>
 
+#include "ipc/layout/request_control.hpp"
 #include "ipc/layout/table.hpp"
 #include "splinecast/time.hpp"
 
@@ -26,7 +27,8 @@ inline constexpr std::tuple kCellRows{
              "bits 8–14: number of newer knots when the knot was last solved\n"
              "bit 15: the row that belongs to it\n"
              "bit 16: a corner: a run begins here at rest, although the segment before it arrives\n"
-             "in motion: the curve was cut while its time law held it"},
+             "in motion: the curve was cut while its time law held it. With form 7 and the item\n"
+             "beside the cell not 0: a stop that a stopper requested begins here"},
     FieldRow{"velocity", {.per_dimension = 1}, FieldWriter::owner, "doubles"},
     FieldRow{"residual",
              {.per_dimension = 1},
@@ -54,6 +56,7 @@ inline constexpr std::tuple kBesideRows{
              "where an entry begins: number of the first waypoint's item of the run, plus 1\n"
              "where an entry beyond the newest waypoint ends: waypoints of the run that it knew\n"
              "of a waypoint that is passed over: item of the run · 2²⁴ + its number in the run\n"
+             "where a stopper's stop begins: items consumed before · 16 + slot of the stopper\n"
              "else 0"},
     FieldRow{"acceleration",
              {.per_dimension = 1},
@@ -84,13 +87,12 @@ inline constexpr unsigned kExcessItemShift = 10;
 inline constexpr unsigned kExcessDimensionShift = 4;
 inline constexpr std::size_t kOutcomesKept = 256;
 inline constexpr std::size_t kOutcomeWords = 2;
-inline constexpr std::size_t kMostStoppers = 16;
-inline constexpr std::size_t kStopperWords = 8;
 inline constexpr std::tuple kBodyRows{
     FieldRow{"refusals",
              {.words = kRefusalsKept},
              FieldWriter::owner,
-             "the last 1,024; refusal i is word i mod 1,024: item number · 256 + reason"},
+             "the last 1,024; refusal i is word i mod 1,024: item number · 256 + reason;\n"
+             "of a stopped stream item number · 256 + 128 + slot of the stopper"},
     FieldRow{"excesses",
              {.words = kExcessesKept * kExcessWords},
              FieldWriter::owner,
@@ -113,9 +115,9 @@ inline constexpr std::tuple kBodyRows{
         "+ kind (1 to 4 in force by spline, entry, stop, end; 5 passed over; 6 withdrawn)\n"
         "word 1: in force: time, ns; else the first item: all from there to the item of word 0"},
     FieldRow{"stoppers",
-             {.words = 2 * kMostStoppers * kStopperWords},
+             {.words = 2 * kStopperTableWords},
              FieldWriter::owner,
-             "reserved for 16 processes that may stop the stream, 8 words each, in two cells: 0"},
+             "two tables of 16 stoppers, one for each cell of the summary: see their part"},
     FieldRow{
         "times",
         {},
@@ -140,6 +142,7 @@ struct BoardLayout {
   std::size_t excesses;  ///< kExcessesKept records of kExcessWords words
   std::size_t worst;     ///< one record
   std::size_t outcomes;  ///< kOutcomesKept records of kOutcomeWords words
+  std::size_t stoppers;  ///< two tables of kStopperTableWords words
   std::size_t times;     ///< packed times: capacity words
   std::size_t slots;     ///< capacity + kPassedSlots slots
   std::size_t cell;      ///< bytes of a cell; the cells are at offset 0 of a slot

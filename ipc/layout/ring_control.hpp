@@ -8,7 +8,7 @@
 
 namespace splinecast::ipc {
 
-inline constexpr std::size_t kProducerRefusals = 16;
+inline constexpr std::size_t kProducerRefusals = 32;
 
 /// The control block of a waypoints region.
 inline constexpr std::tuple kRingControlRows{

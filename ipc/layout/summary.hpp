@@ -92,10 +92,13 @@ struct Summary {
   Word late_commits = 0;         ///< revisions committed too late, including this one: readers may
                                  ///< get `revised`
   Word withdrawn = 0;            ///< items that a replacement withdrew before they were read
+  Word cut_off = 0;              ///< waypoints that the curve was on and a stopper's stop cut off
   Word controls = 0;             ///< replacements, start states and finishes carried out
   Word exceeding = 0;            ///< waypoints with which the curve exceeded a limit, or would have
   Word refused = 0;              ///< items refused
   std::array<Word, kRefusalReasons> reasons{};  ///< items refused, by Refusal
+  Word holders = 0;                             ///< stoppers that hold the stream
+  Word holder = 0;                              ///< slot of one of them in the table of stoppers
   Word end_kind = 0;                            ///< EndKind
   Word end_item = 0;    ///< item that finished the stream; 0 unless end_kind is set
   Time end_lateness{};  ///< how long after the last waypoint's time the curve rests at it
@@ -126,7 +129,9 @@ struct Summary {
     return newest_time - unmet_since > kUnmetTold ? Following::meets_none : Following::meets;
   }
   /// Waypoints that the curve interpolates, including replaced ones.
-  [[nodiscard]] Word interpolated() const noexcept { return knots - passed_over; }
+  [[nodiscard]] Word interpolated() const noexcept { return knots - passed_over - cut_off; }
+  /// Items withdrawn, by a replacement or by a stopper.
+  [[nodiscard]] Word all_withdrawn() const noexcept { return withdrawn + cut_off; }
 };
 
 /// The values that lookups need, in one cache line: the first rows of the summary's cell.
@@ -199,10 +204,9 @@ inline constexpr std::tuple kFurtherRows{
         "waypoints that brought the curve, or would have, beyond a limit"},
     MemberRow<&Summary::refused>{"refused", FieldWriter::owner, "items refused"},
     MemberRow<&Summary::reasons>{"reasons", FieldWriter::owner, "items refused, by reason"},
-    FieldRow{"holders of a stop",
-             {.words = 2},
-             FieldWriter::owner,
-             "reserved for their number, and the slot of one of them: 0"},
+    MemberRow<&Summary::holders>{"holders", FieldWriter::owner,
+                                 "number of stoppers that hold the stream"},
+    MemberRow<&Summary::holder>{"holder", FieldWriter::owner, "slot of one of them; 0: none"},
     MemberRow<&Summary::longest_pause>{
         "longest pause", FieldWriter::owner,
         "ns: longest time in the last second by which a step was late, or took"},
@@ -227,7 +231,9 @@ inline constexpr std::tuple kFurtherRows{
         "undecided", FieldWriter::owner,
         "first item of a waypoint that the curve neither meets nor has passed over;\n"
         "2⁶⁴ − 1: none"},
-    padding(2)};
+    MemberRow<&Summary::cut_off>{"cut off", FieldWriter::owner,
+                                 "waypoints that the curve was on and a stopper's stop cut off"},
+    padding(1)};
 
 /// The words of a cell of the summary's slot. To add a field, add a member of Summary and a row
 /// above; the rest follows from the row.

@@ -6,9 +6,9 @@
 
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/board_control.hpp"
-#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/request_control.hpp"
 #include "ipc/layout/ring_control.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/layout/waypoint_items.hpp"
@@ -51,7 +51,13 @@ constexpr std::array kParts{
     LayoutPart{"Commander of a time law",
                "the end of the slots of a law's board, at the next multiple of 4096 bytes.\n"
                "A table has 16 of them; there are two, one for each cell of the summary",
-               kCommanderFields}};
+               kCommanderFields},
+    LayoutPart{"Control block of a stopper region", "the control offset of the header",
+               kStopperControlFields},
+    LayoutPart{"Stopper of a stream",
+               "`stoppers` of the body of a spline region.\n"
+               "A table has 16 of them; there are two, one for each cell of the summary",
+               kStopperFields}};
 
 class Fnv {
  public:
@@ -125,7 +131,7 @@ std::uint64_t layout_hash() noexcept {
 std::string layout_page() {
   std::ostringstream page;
   page << "# Fields of the shared memory\n\nEvery field of both regions of a stream, and of a "
-          "commander of a time law,\nlayout version "
+          "commander of a time law\nand of a stopper of a stream, layout version "
        << kLayoutVersion
        << ": place, size, writer and meaning.\nFor engineers who read a hex dump or write a reader "
           "in another language;\n[The shared memory of a stream](layout.md) explains how the parts "

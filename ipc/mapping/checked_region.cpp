@@ -18,8 +18,7 @@ void store_header_word(std::span<std::byte> region, std::size_t word, Word value
 
 template <typename Layout>
 CheckedRegion<Layout> open_checked(std::string_view stream, RegionKind kind, bool writable,
-                                   const Trust& trust,
-                                   Layout (*check)(const RegionHeader&, std::size_t)) {
+                                   const Trust& trust, const auto& check) {
   Region region = Region::open(stream, kind, writable, trust);
   // A second name of the file (hard link) has its own lock file, which does not protect this
   // region.
@@ -38,16 +37,29 @@ CheckedRegion<Layout> open_checked(std::string_view stream, RegionKind kind, boo
 }  // namespace
 
 CheckedRegion<RingLayout> open_ring(std::string_view stream, bool writable, const Trust& trust) {
-  return open_checked(stream, RegionKind::waypoints, writable, trust, checked_ring_layout);
+  return open_checked<RingLayout>(stream, RegionKind::waypoints, writable, trust,
+                                  checked_ring_layout);
 }
 
 CheckedRegion<BoardLayout> open_board(std::string_view stream, bool writable, const Trust& trust) {
-  return open_checked(stream, RegionKind::spline, writable, trust, checked_board_layout);
+  return open_checked<BoardLayout>(stream, RegionKind::spline, writable, trust,
+                                   checked_board_layout);
 }
 
-CheckedRegion<CommanderLayout> open_commander(std::string_view stream, bool writable,
-                                              const Trust& trust) {
-  return open_checked(stream, RegionKind::commander, writable, trust, checked_commander_layout);
+CheckedRegion<RequestLayout> open_request(std::string_view stream, RegionKind kind, bool writable,
+                                          const Trust& trust) {
+  const auto check = [kind](const RegionHeader& header, std::size_t bytes) {
+    return checked_request_layout(header, kind, bytes);
+  };
+  return open_checked<RequestLayout>(stream, kind, writable, trust, check);
+}
+
+void require_same_clock(const RegionHeader& header, const std::string& stream) {
+  const auto clock = static_cast<StreamClock>(header.clock);
+  if (!is_live(clock) || header.time_namespace == time_namespace()) return;
+  throw BadRegion("stream '" + stream + "' runs on the clock of time namespace " +
+                  std::to_string(header.time_namespace) + ", this process on that of " +
+                  std::to_string(time_namespace()));
 }
 
 void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept {

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
-#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/request_control.hpp"
 #include "ipc/layout/waypoint_items.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
@@ -21,17 +22,20 @@ struct CheckedRegion {
   Layout layout;
 };
 
-/// Maps a stream's waypoint ring or its knot board, or the region of a commander under the result
-/// of commander_stream(), and populates its pages. `writable` is for the owner only. Throws
-/// NoSuchStream if there is none; BadRegion, naming the file and the offending value, if the region
-/// is not trusted or is not valid; StreamBusy if `writable` is set and another process holds the
-/// lock on the region itself.
+/// Maps a stream's waypoint ring or its knot board, or the region of a commander or a stopper under
+/// the result of commander_stream() or stopper_stream(), and populates its pages. `writable` is for
+/// the owner only. Throws NoSuchStream if there is none; BadRegion, naming the file and the
+/// offending value, if the region is not trusted or is not valid; StreamBusy if `writable` is set
+/// and another process holds the lock on the region itself.
 [[nodiscard]] CheckedRegion<RingLayout> open_ring(std::string_view stream, bool writable,
                                                   const Trust& trust);
 [[nodiscard]] CheckedRegion<BoardLayout> open_board(std::string_view stream, bool writable,
                                                     const Trust& trust);
-[[nodiscard]] CheckedRegion<CommanderLayout> open_commander(std::string_view stream, bool writable,
-                                                            const Trust& trust);
+[[nodiscard]] CheckedRegion<RequestLayout> open_request(std::string_view stream, RegionKind kind,
+                                                        bool writable, const Trust& trust);
+
+/// Throws BadRegion if a live stream runs on the clock of another time namespace.
+void require_same_clock(const RegionHeader& header, const std::string& stream);
 
 /// Writes this process as the owner into the header: process id, time, and the epoch of `before`
 /// plus 1. The stores are relaxed, like the loads of copy_header: no other data depends on the

@@ -19,8 +19,11 @@ constexpr std::string_view kPrefix = "splinecast.";
 constexpr std::string_view kLockSuffix = ".lock";
 constexpr std::size_t kMaxNameLength = 128;
 constexpr char kOfCommander = '@';
+constexpr char kOfStopper = '!';
+constexpr std::string_view kSeparators = "@!";
 
-constexpr std::array kKinds{RegionKind::waypoints, RegionKind::spline, RegionKind::commander};
+constexpr std::array kKinds{RegionKind::waypoints, RegionKind::spline, RegionKind::commander,
+                            RegionKind::stopper};
 
 std::string_view suffix(RegionKind kind) noexcept {
   switch (kind) {
@@ -29,9 +32,11 @@ std::string_view suffix(RegionKind kind) noexcept {
     case RegionKind::spline:
       return ".spline";
     case RegionKind::commander:
+      return ".commander";
+    case RegionKind::stopper:
       break;
   }
-  return ".commander";
+  return ".stopper";
 }
 
 bool is_name_character(char c) noexcept {
@@ -39,9 +44,18 @@ bool is_name_character(char c) noexcept {
          c == '_' || c == '-';
 }
 
-bool is_commander_name(std::string_view stream) noexcept {
-  const auto [law, name] = split_commander(stream);
-  return is_stream_name(law) && is_stream_name(name);
+/// Whether a region of this kind can have the name.
+bool is_region_name(std::string_view stream, RegionKind kind) noexcept {
+  if (is_stream_name(stream)) return kind != RegionKind::stopper;
+  const auto [of, name] = split_requester(stream);
+  if (!is_stream_name(of) || !is_stream_name(name)) return false;
+  return (stream[of.size()] == kOfStopper) == (kind == RegionKind::stopper);
+}
+
+std::string requester_stream(std::string_view of, char separator, std::string_view name) {
+  require_stream_name(of);
+  require_stream_name(name);
+  return std::string(of).append(1, separator).append(name);
 }
 
 /// Bytes of the UTF-8 character at the start of a text, if it can be printed unchanged; 0 for a
@@ -81,9 +95,11 @@ std::string_view owner_role(RegionKind kind) noexcept {
     case RegionKind::spline:
       return "solver";
     case RegionKind::commander:
+      return "commander";
+    case RegionKind::stopper:
       break;
   }
-  return "commander";
+  return "stopper";
 }
 
 void require_stream_name(std::string_view stream) {
@@ -110,9 +126,11 @@ std::string printable(std::string_view text) {
 }
 
 std::string commander_stream(std::string_view law, std::string_view commander) {
-  require_stream_name(law);
-  require_stream_name(commander);
-  return std::string(law).append(1, kOfCommander).append(commander);
+  return requester_stream(law, kOfCommander, commander);
+}
+
+std::string stopper_stream(std::string_view stream, std::string_view stopper) {
+  return requester_stream(stream, kOfStopper, stopper);
 }
 
 std::optional<RegionFileName> region_in(std::string_view file) noexcept {
@@ -123,14 +141,14 @@ std::optional<RegionFileName> region_in(std::string_view file) noexcept {
   for (const RegionKind kind : kKinds) {
     if (!file.ends_with(suffix(kind))) continue;
     file.remove_suffix(suffix(kind).size());
-    if (!is_stream_name(file) && !is_commander_name(file)) break;
+    if (!is_region_name(file, kind)) break;
     return RegionFileName{.stream = file, .kind = kind, .is_lock = is_lock};
   }
   return std::nullopt;
 }
 
-std::pair<std::string_view, std::string_view> split_commander(std::string_view stream) noexcept {
-  const std::size_t at = std::min(stream.find(kOfCommander), stream.size());
+std::pair<std::string_view, std::string_view> split_requester(std::string_view stream) noexcept {
+  const std::size_t at = std::min(stream.find_first_of(kSeparators), stream.size());
   return {stream.substr(0, at), stream.substr(std::min(at + 1, stream.size()))};
 }
 
@@ -144,18 +162,21 @@ void for_each_region(const std::function<void(const RegionFileName& region)>& ta
   if (error) throw_failure("cannot read " + std::string(kSharedMemoryFolder), error.value());
 }
 
-std::vector<std::string> commander_names(std::string_view law) {
-  require_stream_name(law);
+std::vector<std::string> requester_names(std::string_view of, RegionKind kind) {
+  require_stream_name(of);
   std::set<std::string> names;
   for_each_region([&](const RegionFileName& region) {
-    const auto [of, name] = split_commander(region.stream);
-    if (of == law && !name.empty()) names.emplace(name);
+    const auto [owner, name] = split_requester(region.stream);
+    const bool is_stopper = region.kind == RegionKind::stopper;
+    if (owner == of && !name.empty() && is_stopper == (kind == RegionKind::stopper)) {
+      names.emplace(name);
+    }
   });
   return {names.begin(), names.end()};
 }
 
 std::string region_name(std::string_view stream, RegionKind kind) {
-  const std::size_t at = stream.find(kOfCommander);
+  const std::size_t at = stream.find_first_of(kSeparators);
   require_stream_name(stream.substr(0, at));
   if (at != std::string_view::npos) require_stream_name(stream.substr(at + 1));
   return std::string(kPrefix).append(stream).append(suffix(kind));

@@ -18,9 +18,10 @@ enum class RegionKind : std::uint64_t {
   waypoints = 1,  ///< written by the producer
   spline = 2,     ///< written by the solver
   commander = 3,  ///< the latest request of a commander of a time law, written by it
+  stopper = 4,    ///< the latest request of a stopper of a stream, written by it
 };
 
-/// `producer`, `solver` or `commander`: the role that writes a region of this kind.
+/// `producer`, `solver`, `commander` or `stopper`: the role that writes a region of this kind.
 [[nodiscard]] std::string_view owner_role(RegionKind kind) noexcept;
 
 /// Whether a text can name a stream: see require_stream_name().
@@ -38,8 +39,11 @@ void require_stream_name(std::string_view stream);
 /// stream can have. Throws BadRequest unless both can name a stream.
 [[nodiscard]] std::string commander_stream(std::string_view law, std::string_view commander);
 
+/// The same for a stopper of a stream: `STREAM!STOPPER`.
+[[nodiscard]] std::string stopper_stream(std::string_view stream, std::string_view stopper);
+
 /// The file of a region, or of its owner's lock. `stream` is a stream's name or a result of
-/// commander_stream(); it refers to the file name.
+/// commander_stream() or stopper_stream(); it refers to the file name.
 struct RegionFileName {
   std::string_view stream;
   RegionKind kind;
@@ -49,21 +53,22 @@ struct RegionFileName {
 /// What a file of this name is; nothing for other files.
 [[nodiscard]] std::optional<RegionFileName> region_in(std::string_view file) noexcept;
 
-/// The law and the commander in a result of commander_stream().
-[[nodiscard]] std::pair<std::string_view, std::string_view> split_commander(
+/// The law and the commander in a result of commander_stream(), or the stream and the stopper in
+/// one of stopper_stream(); a stream's own name and nothing else.
+[[nodiscard]] std::pair<std::string_view, std::string_view> split_requester(
     std::string_view stream) noexcept;
 
 /// Calls `take` for each file of a region or lock in the folder of shared memory. Throws
 /// OutOfResources if the folder cannot be read.
 void for_each_region(const std::function<void(const RegionFileName& region)>& take);
 
-/// The commanders of a time law that have a region, in alphabetical order. Reads the folder of
-/// shared memory. Throws BadRequest for an invalid name, OutOfResources if the folder cannot be
-/// read.
-[[nodiscard]] std::vector<std::string> commander_names(std::string_view law);
+/// The names of a time law's commanders, or of a stream's stoppers, that have a region of that
+/// kind, in alphabetical order. Reads the folder of shared memory. Throws BadRequest for an invalid
+/// name, OutOfResources if the folder cannot be read.
+[[nodiscard]] std::vector<std::string> requester_names(std::string_view of, RegionKind kind);
 
-/// Name of a region as shared memory: `splinecast.<stream>.waypoints`, `….spline` or, of the result
-/// of commander_stream(), `….commander`.
+/// Name of a region as shared memory: `splinecast.<stream>.waypoints`, `….spline`, of the result
+/// of commander_stream() `….commander`, of that of stopper_stream() `….stopper`.
 [[nodiscard]] std::string region_name(std::string_view stream, RegionKind kind);
 
 /// Path of a region, and of its owner's lock file.

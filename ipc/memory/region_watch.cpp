@@ -84,28 +84,39 @@ void RegionWatch::note(const RegionFileName& region, bool comes) {
     if (comes) streams_.emplace(region.stream);
     if (!comes) streams_.erase(std::string(region.stream));
   }
-  const auto [law, name] = split_commander(region.stream);
-  if (region.kind != RegionKind::commander || name.empty()) return;
-  ++commanders_version_;
-  auto& names = commanders_[std::string(law)];
-  if (comes) names.emplace(name);
-  if (!comes) names.erase(std::string(name));
-  if (names.empty()) commanders_.erase(std::string(law));
+  const auto [of, name] = split_requester(region.stream);
+  if (name.empty()) return;
+  const bool is_commander = region.kind == RegionKind::commander;
+  if (is_commander) commanders_.note(std::string(of), std::string(name), comes);
+  if (region.kind == RegionKind::stopper) stoppers_.note(std::string(of), std::string(name), comes);
 }
 
 void RegionWatch::read_folder() {
   ++version_;
-  ++commanders_version_;
   streams_.clear();
   commanders_.clear();
+  stoppers_.clear();
   for_each_region([&](const RegionFileName& region) { note(region, true); });
   is_complete_ = true;
 }
 
-const std::set<std::string>& RegionWatch::commanders_of(const std::string& law) const noexcept {
+const std::set<std::string>& Requesters::names_of(const std::string& of) const noexcept {
   static const std::set<std::string> kNone;
-  const auto found = commanders_.find(law);
-  return found != commanders_.end() ? found->second : kNone;
+  const auto found = names_.find(of);
+  return found != names_.end() ? found->second : kNone;
+}
+
+void Requesters::note(const std::string& of, std::string name, bool comes) {
+  ++version_;
+  auto& names = names_[of];
+  if (comes) names.insert(std::move(name));
+  if (!comes) names.erase(name);
+  if (names.empty()) names_.erase(of);
+}
+
+void Requesters::clear() noexcept {
+  ++version_;
+  names_.clear();
 }
 
 }  // namespace splinecast::ipc

@@ -161,15 +161,6 @@ StreamClock stream_clock(const RegionHeader& header) noexcept {
 
 std::string header_name(const std::string& name) { return cut(name, kNameBytes - 1); }
 
-void require_same_clock(const RegionHeader& header, const std::string& stream) {
-  if (!is_live(stream_clock(header)) || header.time_namespace == time_namespace()) {
-    return;
-  }
-  throw BadRegion("stream '" + stream + "' runs on the clock of time namespace " +
-                  std::to_string(header.time_namespace) + ", this process on that of " +
-                  std::to_string(time_namespace()));
-}
-
 void require_same_stream(const RegionHeader& ring, const RegionHeader& board) {
   const auto require = [](bool is_same, const char* what) {
     if (!is_same) throw BadRegion(std::string("the regions of the stream differ in ") + what);

@@ -42,10 +42,6 @@ void require_usable(const std::string& which, const Condition& condition, std::s
 /// splitting a UTF-8 character.
 [[nodiscard]] std::string header_name(const std::string& name);
 
-/// Throws BadRegion, naming both time namespaces, if a live stream uses the clock of another time
-/// namespace than this process.
-void require_same_clock(const RegionHeader& header, const std::string& stream);
-
 /// Throws BadRegion, naming what differs, unless the ring's and the board's header agree on the
 /// stream id, the dimensions, their kinds, the clock and the start condition.
 void require_same_stream(const RegionHeader& ring, const RegionHeader& board);

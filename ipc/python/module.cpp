@@ -49,6 +49,7 @@ PYBIND11_MODULE(_splinecast, module) {
   define_samples(module);
   define_reader(module);
   define_rate_commander(module);
+  define_stopper(module);
   define_curve(module);
   define_snapshot(module);
   define_fit(module);

@@ -15,6 +15,7 @@ void define_solver(py::module_& module);
 void define_samples(py::module_& module);
 void define_reader(py::module_& module);
 void define_rate_commander(py::module_& module);
+void define_stopper(py::module_& module);
 void define_snapshot(py::module_& module);
 void define_curve(py::module_& module);
 void define_fit(py::module_& module);

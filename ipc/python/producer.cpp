@@ -2,7 +2,6 @@
 
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <chrono>
 
 #include "ipc/python/docstrings.hpp"
@@ -10,7 +9,6 @@
 #include "ipc/python/values/arrays.hpp"
 #include "ipc/python/values/options.hpp"
 #include "ipc/python/values/records.hpp"
-#include "ipc/python/values/times.hpp"
 #include "ipc/python/values/types.hpp"
 #include "ipc/python/values/waypoints.hpp"
 #include "ipc/python/waits.hpp"
@@ -111,6 +109,9 @@ class HeldProducer {
                   [&](Producer& producer) { return producer.start_from(state, {.moved = moved}); });
   }
 
+  std::vector<std::string> stopped_by() {
+    return producer_.use([](Producer& producer) { return producer.stopped_by(); });
+  }
   py::object old_end() {
     return producer_.use([](Producer& producer) -> py::object {
       const Instant end = producer.old_end();
@@ -243,6 +244,8 @@ class HeldProducer {
     } else if (status == AppendStatus::elsewhere) {
       item.reason =
           producer_.use([&](Producer& producer) { return producer.why_elsewhere(asked.first); });
+    } else if (status == AppendStatus::stopped) {
+      item.reason = py::cast<std::string>(py::str(", ").attr("join")(stopped_by()));
     }
     throw_refused(item);
   }
@@ -312,6 +315,7 @@ void define_appends(Class& producer) {
            py::arg("velocity") = None(), py::arg("acceleration") = None(), py::arg("moved") = false,
            doc::Producer_start_from)
       .def("old_end", &HeldProducer::old_end, doc::Producer_old_end)
+      .def("stopped_by", &HeldProducer::stopped_by, doc::Producer_stopped_by)
       .def("finish", &HeldProducer::finish, py::arg("end") = "halt", timeout, doc::Producer_finish);
 }
 

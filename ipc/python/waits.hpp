@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <optional>
+#include <string>
 
 #include "ipc/python/held.hpp"
+#include "ipc/python/values/times.hpp"
 #include "splinecast/clock.hpp"
 
 /// Waits without the GIL, which a signal to the main thread ends.
@@ -45,6 +48,25 @@ bool wait_until(const Held<Role>& held, Time end, const Wait& wait) {
     check_signals();
     if (clock.now() >= end) return false;
   }
+}
+
+/// Makes a request of a commander or a stopper; with `wait`, returns when it is in force, or raises
+/// TimeoutError. Returns the number of the request.
+template <typename Role, typename Make>
+std::uint64_t in_force(Held<Role>& held, py::handle wait, const std::string& name,
+                       const Make& make) {
+  const auto timeout = optional_duration(wait, "wait");
+  const std::uint64_t number = held.use(make);
+  if (!timeout) return number;
+  const bool is_in_force = wait_until(held, end_of(timeout), [number](Role& own, Time time) {
+    return own.wait_in_force(number, time);
+  });
+  if (is_in_force) return number;
+  const std::string text = "request " + std::to_string(number) + " of '" + name + "' to '" +
+                           held.stream() + "' is not in force after " +
+                           std::to_string(to_seconds(*timeout)) + " s; it remains";
+  PyErr_SetString(PyExc_TimeoutError, text.c_str());
+  throw py::error_already_set();
 }
 
 }  // namespace splinecast::python

@@ -65,6 +65,7 @@ AppendStatus WaypointRingWriter::check_form(const Waypoint& waypoint) const noex
 AppendStatus WaypointRingWriter::check(const Waypoint& waypoint,
                                        const Solved& solved) const noexcept {
   AppendStatus status = check_form(waypoint);
+  if (status == AppendStatus::accepted && solved.is_stopped) status = AppendStatus::stopped;
   if (status == AppendStatus::accepted && is_too_far_ahead(waypoint.time, solved)) {
     status = AppendStatus::too_far_ahead;
   }
@@ -124,9 +125,17 @@ bool WaypointRingWriter::follows_pause(Time time, const Solved& solved) const no
   return follows(solved.settled_until) || (solved.clock != nullptr && follows(solved.clock->now()));
 }
 
+/// Counts a refusal. The items before one that is refused because a stopper holds the stream are
+/// refused, too: after the release the next waypoint begins a run, and may be earlier than they
+/// are.
+AppendStatus WaypointRingWriter::refused(AppendStatus status) noexcept {
+  if (status == AppendStatus::stopped) has_last_ = false;
+  return counted(status);
+}
+
 AppendStatus WaypointRingWriter::append(const Waypoint& waypoint, const Solved& solved) noexcept {
   const AppendStatus status = check(waypoint, solved);
-  if (status != AppendStatus::accepted) return counted(status);
+  if (status != AppendStatus::accepted) return refused(status);
   put_item(0, static_cast<Word>(ItemKind::waypoint), waypoint);
   publish(1, waypoint.time);
   return status;
@@ -137,6 +146,7 @@ AppendStatus WaypointRingWriter::check_replacement(Time t, std::span<const Waypo
                                                    Time blend) const noexcept {
   if (waypoints.empty()) return check_stop(t, solved);
   if (finished_) return AppendStatus::finished;
+  if (solved.is_stopped) return AppendStatus::stopped;
   const Time earliest = earliest_replacement(solved);
   const bool is_soonest = t == kSoonest;
   const Time from = is_soonest ? std::max(earliest, -kLatestTime) : t;
@@ -183,7 +193,7 @@ AppendStatus WaypointRingWriter::replace_from(Time t, std::span<const Waypoint> 
                                               const Solved& solved, Time blend) noexcept {
   if (waypoints.empty()) return counted(stop_from(t, solved));
   const AppendStatus status = check_replacement(t, waypoints, solved, blend);
-  if (status != AppendStatus::accepted) return counted(status);
+  if (status != AppendStatus::accepted) return refused(status);
   claim(1 + waypoints.size());
   const Word kind = static_cast<Word>(ItemKind::replace) | waypoints.size() << kCountShift;
   put_item(0, kind, {.time = t == kSoonest ? effect_of_stop(t, solved) : t, .position = {}});
@@ -241,6 +251,7 @@ AppendStatus WaypointRingWriter::start_from(const Instant& state, const Solved& 
     status = AppendStatus::wrong_dimension;
   }
   if (status == AppendStatus::accepted && has_begun_) status = AppendStatus::already_started;
+  if (status == AppendStatus::accepted && solved.is_stopped) status = AppendStatus::stopped;
   if (status == AppendStatus::accepted && is_long_past(state.time, solved)) {
     status = AppendStatus::past;
   }

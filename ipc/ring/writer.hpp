@@ -87,7 +87,8 @@ class WaypointRingWriter {
     /// Until when the solver refuses waypoints as `cannot follow`; max(): it does not. Counts while
     /// it has consumed all items.
     Time refused_until = Time::max();
-    Time freeze_ahead{};  ///< of the solver of a live stream; 0 if it is not known
+    Time freeze_ahead{};      ///< of the solver of a live stream; 0 if it is not known
+    bool is_stopped = false;  ///< a stopper holds the stream
   };
 
   /// The time of a replacement, or a stop, as soon as possible.
@@ -153,6 +154,7 @@ class WaypointRingWriter {
   void retire() noexcept;
 
  private:
+  AppendStatus refused(AppendStatus status) noexcept;
   [[nodiscard]] AppendStatus check_form(const Waypoint& waypoint) const noexcept;
   [[nodiscard]] AppendStatus check_path(Time t, bool is_soonest,
                                         std::span<const Waypoint> waypoints,

@@ -9,6 +9,7 @@
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/options/curve.hpp"
+#include "ipc/owned/stoppers.hpp"
 #include "ipc/ring/reader.hpp"
 #include "ipc/solve/shown_motion.hpp"
 #include "splinecast/clock.hpp"
@@ -49,6 +50,7 @@ void inspect_spline(StreamInfo& info, const Trust& trust) {
     if (const auto excess = board.excess(info.summary, i)) info.excesses.push_back(*excess);
   }
   info.worst_excess = board.worst_excess();
+  info.stoppers = stoppers_of(board);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "ipc/layout/board_control.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/summary.hpp"
+#include "ipc/requests/stopper_table.hpp"
 #include "splinecast/limits.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/status.hpp"
@@ -32,6 +33,7 @@ struct StreamInfo {
                                       ///< fewer if the solver has overwritten some meanwhile
   std::vector<LimitExcess> excesses;  ///< the last excesses, oldest first: at most kExcessesKept
   std::optional<LimitExcess> worst_excess;  ///< the largest one of a waypoint that was not refused
+  std::vector<StopperEntry> stoppers;       ///< by the board: what is in force
 };
 
 /// Inspects a stream. The settled time of the summary is that of Reader::settled_until(), which

@@ -41,7 +41,7 @@ ProducerOptions ring_options(const SolverOptions& options) {
 }  // namespace
 
 bool LawServer::is_wanted(const std::string& law, const RegionWatch& watch) {
-  return !watch.commanders_of(law).empty() && !is_owned(law, RegionKind::waypoints);
+  return !watch.commanders().names_of(law).empty() && !is_owned(law, RegionKind::waypoints);
 }
 
 SolverOptions LawServer::solver_options(const SolverOptions& options) {
@@ -144,7 +144,7 @@ void LawServer::look_around(const Clock& clock) {
         return state.is_used() && !rate_.knows(state.id);
       });
   // Before a new commander is read, which the next plan makes known.
-  if (is_rate_known_) faults_.look(commanders_, rate_, ring_.header.largest_rate);
+  if (is_rate_known_) faults_.set(faults_of(commanders_, rate_, ring_.header.largest_rate));
   commanders_.look_around(needs_room);
   next_look_ = now + kLookEvery;
 }

@@ -15,6 +15,7 @@
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/memory/region_watch.hpp"
 #include "ipc/owned/ring.hpp"
+#include "ipc/requests/faults.hpp"
 #include "ipc/sampling/sampler.hpp"
 #include "ipc/solve/law_planner.hpp"
 #include "splinecast/clock.hpp"
@@ -61,7 +62,7 @@ class LawServer : public LawPlanner {
 
   [[nodiscard]] const Commanders& commanders() const noexcept { return commanders_; }
 
-  /// See CommanderFaults::take().
+  /// See faults_of() and RequestFaults::take().
   void take_faults(std::vector<std::string>& out) { faults_.take(out); }
 
  private:
@@ -78,7 +79,7 @@ class LawServer : public LawPlanner {
   OwnerLock lock_;
   OwnedRing ring_;
   Commanders commanders_;
-  CommanderFaults faults_;
+  RequestFaults faults_;
   const KnotBoardReader* board_ = nullptr;
   std::optional<Sampler> sampler_;
   Time freeze_ahead_{};

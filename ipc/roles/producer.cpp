@@ -20,6 +20,7 @@
 #include "ipc/owned/continued_motion.hpp"
 #include "ipc/owned/outcome.hpp"
 #include "ipc/owned/ring.hpp"
+#include "ipc/owned/stoppers.hpp"
 #include "ipc/owned/stream_start.hpp"
 #include "ipc/ring/reader.hpp"
 #include "ipc/ring/writer.hpp"
@@ -90,13 +91,10 @@ struct Producer::Impl {
   }
 
   /// The header of the law that the options name; one with the stream id 0 if they name none.
-  [[nodiscard]] ipc::RegionHeader header_of_law() {
-    // own_ring refuses a law without this clock.
+  [[nodiscard]] ipc::RegionHeader header_of_law() {  // own_ring refuses a law without this clock
     if (options.law.empty() || options.clock != StreamClock::law) return {};
     try {
-      const auto header = ipc::peek_header(options.law, ipc::RegionKind::spline, options.trust);
-      if (header && header->is_law != 0) return *header;
-      throw NoSuchStream("there is no time law '" + options.law + "' with a solver");
+      return ipc::header_of_law(options.law, options.trust);
     } catch (...) {
       lock.remove_unused_file();
       throw;
@@ -143,6 +141,7 @@ struct Producer::Impl {
     const bool is_time = is_time_in_range(look.settled_until);
     if (look.revision > 0 && is_time) settled_until = look.settled_until;
     known.settled_until = settled_until;
+    known.is_stopped = solver->board.holders() > 0;
     const bool may_refuse = ipc::beyond(solver->header) == Beyond::enter && look.revision > 0;
     if (may_refuse) known.refused_until = solver->board.refused_until(look.revision);
     return known;
@@ -299,6 +298,11 @@ std::string Producer::why_elsewhere(const Waypoint& first) {
   return impl_->start.why_elsewhere(first, impl_->look_at_solver(), impl_->board_header());
 }
 
+std::vector<std::string> Producer::stopped_by() {
+  impl_->look_for_solver();
+  return impl_->solver ? ipc::holders_of(impl_->solver->board) : std::vector<std::string>{};
+}
+
 Time Producer::now() noexcept {
   const bool is_recorded = ipc::stream_clock(impl_->ring.header) == StreamClock::recorded;
   return is_recorded ? Time::zero() : impl_->stream_clock().now();
@@ -328,18 +332,14 @@ AppendStatus Producer::finish(const Condition& end) {
 
 Refusals Producer::refusals() {
   Refusals found;
-  refusals(found);
-  return found;
+  return refusals(found), found;
 }
 
 void Producer::refusals(Refusals& out) {
   impl_->look_for_solver();
-  if (impl_->solver) {
-    impl_->refused.look(impl_->solver->board, impl_->sent, out);
-  } else {
-    out.items.clear();
-    out.missed = out.consumed = 0;
-  }
+  out.items.clear();
+  out.missed = out.consumed = 0;
+  if (impl_->solver) impl_->refused.look(impl_->solver->board, impl_->sent, out);
 }
 
 std::uint64_t Producer::last_item() const noexcept { return impl_->last_item; }

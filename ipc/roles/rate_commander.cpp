@@ -1,6 +1,7 @@
 #include "splinecast/rate_commander.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <string>
 #include <thread>
@@ -13,7 +14,8 @@
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/memory/futex.hpp"
 #include "ipc/memory/names.hpp"
-#include "ipc/owned/commander.hpp"
+#include "ipc/owned/request.hpp"
+#include "ipc/requests/record.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 
@@ -33,7 +35,7 @@ struct RateCommander::Impl {
   std::string name;
   ipc::OwnerLock lock;
   ipc::LawBoard board;
-  ipc::OwnedCommander own;
+  ipc::OwnedRequest own;
   ipc::RateCommand command;  ///< the last one
   bool may_renew = false;    ///< it was made completely, by this process or an earlier one
   Time dead_man{};           ///< of the next request
@@ -44,13 +46,15 @@ struct RateCommander::Impl {
         name(std::move(region)),
         lock(name, ipc::RegionKind::commander),
         board(law, trust),
-        own(ipc::own_commander((require_slot(trust), name), access, trust, lock)) {
+        own(ipc::own_request((require_slot(trust), name), ipc::RegionKind::commander, access, trust,
+                             lock)) {
     lock.keep_file();
-    const ipc::CommandCopy left = ipc::copy_command(own.control);
-    const auto last = left.is_whole ? ipc::command_of(left.words) : std::nullopt;
+    std::array<ipc::Word, ipc::kCommanderRecordWords> words{};
+    const bool is_whole = ipc::copy_record(own.control, words).is_whole;
+    const auto last = is_whole ? ipc::command_of(words) : std::nullopt;
     may_renew = last.has_value();
     command = last.value_or(command);
-    command.number = left.words[0];  // also of a request that was not completed
+    command.number = words[0];  // also of a request that was not completed
   }
 
   /// Throws OutOfResources if the law knows as many commanders as it can, and not this one.
@@ -94,7 +98,7 @@ struct RateCommander::Impl {
   void write() {
     command.time = MonotonicClock().now();
     ipc::write_command(own.control, command);
-    ipc::wake_all(own.control[ipc::kCommanderSequence]);
+    ipc::wake_all(own.control[ipc::kRecordSequence]);
     if (own.region.is_linked(name, ipc::RegionKind::commander)) return;
     throw BadRegion(ipc::region_path(name, ipc::RegionKind::commander) +
                     " has been removed: no solver can find the request");

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <span>
 
+#include "ipc/owned/stoppers.hpp"
+
 namespace splinecast::ipc {
 
 void RefusalReader::skip(const KnotBoardReader& board) noexcept {
@@ -29,6 +31,7 @@ void RefusalReader::look(const KnotBoardReader& board, const WaypointRingReader&
     if (refused.item < first_) continue;
     out.items.push_back(
         {.item = refused.item, .time = ring.observe_time(refused.item), .reason = refused.reason});
+    if (refused.reason == Refusal::stopped) out.items.back().by = stopper_of(board, refused.slot);
     if (refused.reason != Refusal::beyond_limits) continue;
     out.items.back().excess = board.excess_of(summary_, refused.item);
   }

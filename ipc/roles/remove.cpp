@@ -11,6 +11,8 @@
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/memory/futex.hpp"
+#include "ipc/requests/record.hpp"
+#include "ipc/requests/stoppers.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/streams.hpp"
 
@@ -30,13 +32,17 @@ Removable as_removable(RegionKind kind, CheckedRegion<Layout> opened) {
   return {.kind = kind, .region = std::move(opened.region), .control = opened.layout.control};
 }
 
+bool is_request(RegionKind kind) noexcept {
+  return kind == RegionKind::commander || kind == RegionKind::stopper;
+}
+
 /// Whether a file's header and size are those of a region.
 bool describes_region(const RegionFile& file, RegionKind kind) {
   if (!file.header) return false;
   try {
     if (kind == RegionKind::waypoints) checked_ring_layout(*file.header, file.bytes);
     if (kind == RegionKind::spline) checked_board_layout(*file.header, file.bytes);
-    if (kind == RegionKind::commander) checked_commander_layout(*file.header, file.bytes);
+    if (is_request(kind)) checked_request_layout(*file.header, kind, file.bytes);
     return true;
   } catch (const BadRegion&) {
     return false;
@@ -52,9 +58,10 @@ Removable removable(const std::string& stream, RegionKind kind, const Trust& tru
     case RegionKind::spline:
       return as_removable(kind, open_board(stream, true, trust));
     case RegionKind::commander:
+    case RegionKind::stopper:
       break;
   }
-  return as_removable(kind, open_commander(stream, true, trust));
+  return as_removable(kind, open_request(stream, kind, true, trust));
 }
 
 /// Marks a region as retired, and wakes the processes that wait on it.
@@ -91,11 +98,41 @@ void remove_regions(const std::string& stream, std::span<const RegionKind> kinds
   for (OwnerLock& lock : locks) lock.remove_file();
 }
 
+/// Whether the process of a stopper has ended and its request is withdrawn.
+bool is_released(const std::string& region, const Trust& trust) {
+  if (is_owned(region, RegionKind::stopper)) return false;
+  const auto opened = open_request(region, RegionKind::stopper, false, trust);
+  const auto control = words_at(opened.region.bytes(), opened.layout.control, kLineWords);
+  std::array<Word, kStopperRecordWords> words{};
+  const RecordCopy copy = copy_record(control, words);
+  const auto request = copy.is_whole ? stop_request_of(words) : std::nullopt;
+  return copy.is_unwritten() || (request && !request->is_latched);
+}
+
+/// Removes the regions of stoppers that do not hold the stream: the others stay in force. Returns
+/// whether there was one.
+bool remove_released_stoppers(const std::string& stream, const Trust& trust) {
+  bool has_removed = false;
+  for (const std::string& stopper : requester_names(stream, RegionKind::stopper)) {
+    const std::string region = stopper_stream(stream, stopper);
+    try {
+      constexpr std::array kOfStopper{RegionKind::stopper};
+      if (!is_released(region, trust)) continue;
+      remove_regions(region, kOfStopper, trust);
+      has_removed = true;
+    } catch (const StreamError&) {
+      continue;  // one that cannot be read, or is not this user's, may hold the stream
+    }
+  }
+  return has_removed;
+}
+
 }  // namespace
 }  // namespace ipc
 
 void remove_stream(const std::string& stream, const Trust& trust) {
-  const std::vector<std::string> commanders = ipc::commander_names(stream);
+  const std::vector<std::string> commanders =
+      ipc::requester_names(stream, ipc::RegionKind::commander);
   for (const std::string& commander : commanders) {
     if (!ipc::is_owned(ipc::commander_stream(stream, commander), ipc::RegionKind::commander))
       continue;
@@ -104,11 +141,12 @@ void remove_stream(const std::string& stream, const Trust& trust) {
   constexpr std::array kOfStream{ipc::RegionKind::waypoints, ipc::RegionKind::spline};
   // With layout version 6 a commander had a waypoints region.
   constexpr std::array kOfCommander{ipc::RegionKind::commander, ipc::RegionKind::waypoints};
+  const bool had_stopper = ipc::remove_released_stoppers(stream, trust);
   // A law that has not begun has only the regions of its commanders.
   try {
     ipc::remove_regions(stream, kOfStream, trust);
   } catch (const NoSuchStream&) {
-    if (commanders.empty()) throw;
+    if (commanders.empty() && !had_stopper) throw;
   }
   for (const std::string& commander : commanders) {
     ipc::remove_regions(ipc::commander_stream(stream, commander), kOfCommander, trust);

@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <chrono>
+#include <exception>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
 #include "ipc/owned/board.hpp"
+#include "ipc/requests/stoppers.hpp"
 #include "ipc/roles/internals.hpp"
 #include "ipc/roles/law_server.hpp"
 #include "ipc/roles/refusals.hpp"
@@ -46,6 +48,9 @@ struct RingView {
   }
 };
 
+/// How often a solver that does not sleep looks for new stoppers, with a system call.
+constexpr Time kLookEvery = std::chrono::milliseconds(1);
+
 /// How often the solver of a stream whose law holds looks at the law.
 constexpr Time kHeldPoll = std::chrono::milliseconds(5);
 
@@ -54,8 +59,9 @@ struct Attachment {
   RingView ring;
   ipc::OwnedBoard board;
   ipc::StreamSolver solver;
-  std::unique_ptr<ipc::LawFollower> law;  ///< of a stream that follows one
-  Time held_until = Time::min();          ///< host time before which a held law needs no step
+  std::unique_ptr<ipc::Stoppers> stoppers;  ///< of a live stream that is not a law
+  std::unique_ptr<ipc::LawFollower> law;    ///< of a stream that follows one
+  Time held_until = Time::min();            ///< host time before which a held law needs no step
   ipc::RefusalReader refusals;
   Refusals refused;
   ipc::Word refusals_seen;
@@ -96,6 +102,7 @@ struct Solver::Impl {
   ipc::OwnerLock lock;
   const ipc::RegionWatch* watch = nullptr;  ///< of this object, or of its caller
   std::unique_ptr<ipc::RegionWatch> own_watch;
+  Time next_look = Time::min();            ///< of own_watch; min(): at once
   std::unique_ptr<ipc::LawServer> server;  ///< if the stream is a law
   std::unique_ptr<Attachment> attachment;
   Time next_attach = Time::min();
@@ -124,18 +131,33 @@ struct Solver::Impl {
       const auto peeked = ipc::peek_header(stream, ipc::RegionKind::waypoints, options.trust);
       if (!peeked || peeked->is_law == 0) return true;
     }
-    if (watch == nullptr) {
-      own_watch = std::make_unique<ipc::RegionWatch>();
-      watch = own_watch.get();
-    }
     look();
     if (!ipc::LawServer::is_wanted(stream, *watch)) return has_ring;
     server = std::make_unique<ipc::LawServer>(stream, options, *watch);
     return true;
   }
 
+  /// Learns which commanders and stoppers have come and gone.
   void look() {
+    if (watch == nullptr) {
+      own_watch = std::make_unique<ipc::RegionWatch>();
+      watch = own_watch.get();
+    }
     if (own_watch) own_watch->look();
+  }
+
+  /// The same for the stoppers of the stream, at most every kLookEvery while the solver does not
+  /// sleep. If that fails, the next call tries again: the curve continues.
+  void look_for_stoppers(Time now) noexcept {
+    try {
+      if (own_watch && (now >= next_look || now < next_look - kLookEvery)) {
+        next_look = now + kLookEvery;
+        own_watch->look();
+      }
+      attachment->stoppers->look_around(now);
+    } catch (const std::exception&) {
+      next_look = Time::min();
+    }
   }
 
   /// Opens the law that a stream follows. Returns false if there is none, or if it has not begun.
@@ -152,6 +174,16 @@ struct Solver::Impl {
     return has_values(law->at(clock.now(), point));
   }
 
+  /// The stoppers of a live stream, as they are before its first step; null for others.
+  std::unique_ptr<ipc::Stoppers> find_stoppers(const ipc::RegionHeader& header,
+                                               const Clock& clock) {
+    if (server || !is_live(ipc::stream_clock(header))) return nullptr;
+    look();
+    auto stoppers = std::make_unique<ipc::Stoppers>(stream, options.trust, *watch);
+    stoppers->look_around(clock.now());
+    return stoppers;
+  }
+
   bool attach(const Clock& clock) {
     auto [region, header, layout] = ipc::open_ring(stream, false, options.trust);
     ipc::require_same_clock(header, stream);
@@ -162,6 +194,7 @@ struct Solver::Impl {
       next_attach = clock.now() + kPoll;
       return false;
     }
+    auto stoppers = find_stoppers(header, clock);
     const SolverOptions how = server ? ipc::LawServer::solver_options(options) : options;
     auto board = ipc::own_board(stream, header, how, clock);
     if (const auto* const occupied = std::get_if<ipc::Occupied>(&board)) {
@@ -175,6 +208,8 @@ struct Solver::Impl {
       server->attach(attachment->board.reader, attachment->board.header);
       attachment->solver.plan_with(*server);
     }
+    if (stoppers) attachment->solver.heed(*stoppers);
+    attachment->stoppers = std::move(stoppers);
     lock.keep_file();
     return true;
   }
@@ -213,6 +248,8 @@ StepResult Solver::step(const Clock& clock) {
   if (impl_->server) {
     impl_->look();
     impl_->server->look_around(clock);
+  } else if (at.stoppers) {
+    impl_->look_for_stoppers(clock.now());
   }
   const StepResult result = at.step(clock);
   if (result.damaged) {
@@ -258,6 +295,7 @@ void Solver::wait(Time timeout) noexcept {
     const Time most = std::min({timeout, kSlice, due - now});
     if (!impl_->server) {
       ipc::wait_while_equal(at.ring.ring.written_word(), written, most);
+      impl_->next_look = Time::min();
     } else {
       impl_->server->commanders().wait(most);
     }
@@ -293,6 +331,7 @@ std::optional<LimitExcess> Solver::take_first_excess() noexcept {
 
 void Solver::take_commander_faults(std::vector<std::string>& out) {
   if (impl_->server) impl_->server->take_faults(out);
+  if (attached() && impl_->attachment->stoppers) impl_->attachment->stoppers->take_faults(out);
 }
 
 std::string Solver::in_words(const LimitExcess& excess) const {
@@ -349,10 +388,11 @@ ipc::SolverWatch ipc::Internals::watch(const Solver& solver) noexcept {
   const ipc::LawServer* const server = solver.impl_->server.get();
   if (server == nullptr) {
     return {at.ring.ring.polled(), at.solver.seen(), solver.due(), at.solver.settled_raise(),
-            nullptr};
+            at.stoppers ? &at.stoppers->regions() : nullptr};
   }
   // A step of a law also looks for commanders: raising the settled time does not replace it.
-  return {at.ring.ring.polled(), at.solver.seen(), solver.due(), {}, &server->commanders()};
+  return {
+      at.ring.ring.polled(), at.solver.seen(), solver.due(), {}, &server->commanders().regions()};
 }
 
 }  // namespace ipc

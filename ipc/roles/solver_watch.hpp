@@ -2,10 +2,10 @@
 
 #include <span>
 
-#include "ipc/law/commands.hpp"
 #include "ipc/layout/common_control.hpp"
 #include "ipc/layout/ring_control.hpp"
 #include "ipc/memory/word.hpp"
+#include "ipc/requests/regions.hpp"
 #include "ipc/solve/settled_raise.hpp"
 #include "splinecast/time.hpp"
 
@@ -15,10 +15,15 @@ namespace splinecast::ipc {
 /// invalid once its solver has detached.
 class SolverWatch {
  public:
-  /// `commanders` are those of a law; null for other streams.
+  /// `requests` are those of a law's commanders, or of a live stream's stoppers; null for others.
   SolverWatch(std::span<const Word, 2> polled, Word seen, Time due, const SettledRaise& raise,
-              const Commanders* commanders) noexcept
-      : polled_(polled), seen_(seen), due_(due), raise_(raise), commanders_(commanders) {}
+              const RequestRegions* requests) noexcept
+      : polled_(polled), seen_(seen), due_(due), raise_(raise) {
+    if (requests == nullptr) return;
+    news_ = requests->news();
+    seen_news_ = requests->seen_news();
+    if (!requests->sources().empty() || requests->has_untried()) requests_ = requests;
+  }
 
   /// Whether the ring has items that the last step did not see. One load of a word that only the
   /// producer writes.
@@ -37,11 +42,13 @@ class SolverWatch {
     return true;
   }
 
-  /// Whether the producer has caused work for a step: there are new items, or the stream has been
-  /// retired. Loads from one cache line, of a law also from one per commander.
+  /// Whether another process has caused work for a step: there are new items, the stream has been
+  /// retired, or a commander or stopper has come, gone or made a request. Loads from one cache line
+  /// of the stream, from one that all streams share, and from one per commander or stopper.
   [[nodiscard]] bool calls() const noexcept {
     return has_items() || load(polled_[kRetired], std::memory_order_acquire) != 0 ||
-           (commanders_ != nullptr && commanders_->calls());
+           (news_ != nullptr && *news_ != seen_news_) ||
+           (requests_ != nullptr && requests_->calls());
   }
 
   /// When the next step is due without items; max() for never.
@@ -52,7 +59,9 @@ class SolverWatch {
   Word seen_;
   Time due_;
   SettledRaise raise_;
-  const Commanders* commanders_;
+  const Word* news_ = nullptr;  ///< changes when a commander, or a stopper, comes or goes
+  Word seen_news_ = 0;
+  const RequestRegions* requests_ = nullptr;
 };
 
 }  // namespace splinecast::ipc

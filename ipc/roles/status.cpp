@@ -1,6 +1,20 @@
 #include "splinecast/status.hpp"
 
+#include <array>
+#include <charconv>
+
+#include "splinecast/producer.hpp"
+
 namespace splinecast {
+namespace {
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.begin(), text.end(), value, std::chars_format::general, 6);
+  return {text.begin(), end.ptr};
+}
+
+}  // namespace
 
 std::string_view to_string(AppendStatus status) noexcept {
   switch (status) {
@@ -36,6 +50,8 @@ std::string_view to_string(AppendStatus status) noexcept {
       return "too far ahead";
     case AppendStatus::elsewhere:
       return "elsewhere";
+    case AppendStatus::stopped:
+      return "stopped";
   }
   return "unknown";
 }
@@ -72,6 +88,8 @@ std::string_view to_string(Refusal refusal) noexcept {
       return "beyond limits";
     case Refusal::cannot_follow:
       return "cannot follow";
+    case Refusal::stopped:
+      return "stopped";
   }
   return "unknown";
 }
@@ -100,6 +118,24 @@ std::string_view to_string(SampleStatus status) noexcept {
       return "wrong dimension";
   }
   return "unknown";
+}
+
+std::string to_string(const ItemRefusal& refusal) {
+  std::string text = "item " + std::to_string(refusal.item) + " refused: ";
+  text += to_string(refusal.reason);
+  if (!refusal.by.empty()) text += " by '" + refusal.by + "'";
+  if (refusal.time) text += " (time " + std::to_string(refusal.time->count()) + " ns)";
+  if (refusal.excess) text += ": " + in_words(*refusal.excess);
+  return text;
+}
+
+std::string in_words(const LimitExcess& excess, std::span<const std::string> names) {
+  std::string text(to_string(excess.kind));
+  text += " of dimension " + std::to_string(excess.dimension);
+  const bool has_name = excess.dimension < names.size() && !names[excess.dimension].empty();
+  if (has_name) text += " (" + names[excess.dimension] + ")";
+  return text + " is " + number(excess.value) + " at " + std::to_string(excess.time.count()) +
+         " ns, limit " + number(excess.limit);
 }
 
 }  // namespace splinecast

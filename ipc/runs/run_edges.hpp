@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/polynomial/segment.hpp"
+#include "ipc/layout/request_control.hpp"
 #include "ipc/memory/word.hpp"
 #include "splinecast/state.hpp"
 
@@ -48,7 +49,21 @@ struct RunBegin {
   Time blend{};               ///< least duration of its entry
   bool has_waypoints = true;  ///< else it is a stop
   bool is_from_rest = false;  ///< the machine rests where it begins
+  Word stopped_by = 0;        ///< a stopper's stop: see stop_item(); 0: none
 };
+
+/// The items that were consumed before a stopper's stop, and the stopper's slot, as the knot at
+/// which the stop begins has them in its `item`.
+struct StopOrigin {
+  Word items = 0;
+  Word slot = 0;
+};
+[[nodiscard]] constexpr Word stop_item(const StopOrigin& origin) noexcept {
+  return origin.items * kMostStoppers + origin.slot;
+}
+[[nodiscard]] constexpr StopOrigin stop_origin(Word item) noexcept {
+  return {.items = item / kMostStoppers, .slot = item % kMostStoppers};
+}
 
 /// The times of the motion after an entry that ends beyond the newest waypoint: the remainder of
 /// the straight line, unless the entry ends after the line, and the stop.

@@ -28,6 +28,7 @@ struct CurveOrigin {
   Time time{};
   bool is_new = false;     ///< the board does not hold it yet
   bool is_corner = false;  ///< the run began from rest there
+  Word stopped_by = 0;     ///< a stopper's stop begins there: see stop_item(); 0: none
 };
 
 /// The end that is being searched for: slowing down, or an entry to the last waypoint from there.

@@ -105,7 +105,8 @@ bool PublishedCurve::decide_start(Time t, Time settled, Time keep, int& tries) n
 /// Finds the state at which an entry begins: the origin if that has not settled, else the state of
 /// the committed curve at `settled`. Returns false if the board is damaged.
 bool PublishedCurve::find_state(Time settled) noexcept {
-  uses_cut_ = origin_.number == 0 || (!origin_.is_new && settled > origin_.time);
+  const bool is_kept = settled > origin_.time || origin_.stopped_by > 0;
+  uses_cut_ = origin_.number == 0 || (!origin_.is_new && is_kept);
   if (!uses_cut_) return true;
   // The entry must begin after the last knot that the curve meets. That of a curve that has left
   // its target may be later than `settled`; it is the newest knot of the committed curve.
@@ -114,6 +115,8 @@ bool PublishedCurve::find_state(Time settled) noexcept {
     t = std::max(t, newest_time() + Time(1));
   } else if (origin_.number == 0) {
     t = std::max(t, published_->time_hint(summary_.newest) + Time(1));
+  } else if (origin_.stopped_by > 0) {
+    t = std::max(t, origin_.time + Time(1));  // its knot says whose stop began there
   }
   is_damaged_ = is_damaged_ || !cut_.find(summary_, t);
   return !is_damaged_;

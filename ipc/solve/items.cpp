@@ -4,7 +4,7 @@
 #include "core/limits/check.hpp"
 #include "ipc/solve/stream_solver.hpp"
 
-/// Takes or refuses the items of a ring, and records their outcomes.
+/// Takes or refuses the items of a ring, and records their outcomes; begins the stops of stoppers.
 namespace splinecast::ipc {
 namespace {
 
@@ -26,6 +26,10 @@ Refusal to_refusal(AppendStatus interval) noexcept {
 
 void StreamSolver::take(Word number) noexcept {
   if (summary_.finished) return refuse(number, Refusal::after_finish);
+  if (is_held() && moves(item_)) {
+    return item_.kind == ItemKind::replace ? refuse_replacement(number, Refusal::stopped)
+                                           : refuse(number, Refusal::stopped);
+  }
   if (number == unsound_item_) {
     return item_.kind == ItemKind::replace ? refuse_replacement(number, Refusal::not_finite)
                                            : refuse(number, Refusal::not_finite);
@@ -43,6 +47,67 @@ void StreamSolver::take(Word number) noexcept {
       return take_plan(number);
   }
   refuse(number, Refusal::unknown_kind);
+}
+
+/// Where a replacement from t on cuts the curve: never too late.
+Time StreamSolver::time_of_cut(Time t) const noexcept {
+  return std::max({t, settled_until_, curve_.earliest_cut()});
+}
+
+/// Whether the law holds the stream where the curve can be cut.
+bool StreamSolver::can_rest() const noexcept {
+  return rest_ && curve_.has_begun() && *rest_ >= curve_.earliest_cut();
+}
+
+/// Cuts the curve at t and begins a run there: from rest where the law holds, instead of what has
+/// settled after it.
+void StreamSolver::begin_run(Time t, const RunBegin& how) noexcept {
+  outcomes_.cut(progress_of(curve_.summary()), t);
+  if (how.is_from_rest) settled_until_ = t;
+  rests_ = rests_ || how.is_from_rest;
+  curve_.begin_run(t, how);
+  summary_.starved = false;
+  summary_.newest_time = t;
+}
+
+/// Ends a stop that is executed when the law holds the machine.
+void StreamSolver::rest_where_held() noexcept {
+  if (!can_rest() || *rest_ > settled_until_ || summary_.finished) return;
+  const Time latest = latest_from_rest(*rest_, settled_until_, live_->freeze_ahead);
+  if (curve_.is_stopping(*rest_, latest))
+    begin_run(*rest_, {.has_waypoints = false, .is_from_rest = true});
+}
+
+/// Reads what the stoppers request. If one holds the stream and the curve does not stop yet, begins
+/// a stop as soon as possible, as that of a producer. Returns whether it does.
+bool StreamSolver::stops_where_held() noexcept {
+  if (stoppers_ == nullptr) return false;
+  stops_.update(stoppers_->read());
+  summary_.holders = stops_.holders();
+  summary_.holder = stops_.holder();
+  if (!is_held() || !curve_.has_begun() || summary_.finished) return false;
+  const bool rests = can_rest() && *rest_ <= settled_until_;
+  const Time t = rests ? *rest_ : time_of_cut(Time::min());
+  if (curve_.is_stop() && t >= curve_.newest_time()) return false;
+  summary_.cut_off += curve_.waypoints_after(t);
+  begin_run(t, {.has_waypoints = false,
+                .is_from_rest = rests,
+                .stopped_by = stop_item({summary_.consumed, summary_.holder})});
+  return true;
+}
+
+/// Begins the curve at rest where an earlier stream of the name has left the machine. The producer
+/// has compared only its first waypoint with that place, and a stopper's hold has refused it.
+void StreamSolver::begin_where_left() noexcept {
+  const bool is_start_lost = summary_.reasons[static_cast<std::size_t>(Refusal::stopped)] > 0;
+  if (curve_.has_begun() || !is_start_lost) return;
+  const auto part = [this](std::size_t i) {
+    return std::span(unwrapped_).subspan(i * ring_->dimensions(), ring_->dimensions());
+  };
+  std::ranges::fill(unwrapped_, 0.0);
+  if (!published_->copy_old_end(part(0))) return;
+  curve_.begin({settled_until_, part(0), part(1), part(2)});
+  summary_.newest_time = settled_until_;
 }
 
 /// The reason to refuse the values of a waypoint, if any. The producer has checked most of them,
@@ -83,6 +148,7 @@ void StreamSolver::take_waypoint(Word number) noexcept {
   Waypoint waypoint = item_.waypoint();
   if (const auto refusal = form_refusal(waypoint)) return refuse(number, *refusal);
   if (const auto refusal = time_refusal(waypoint.time)) return refuse(number, *refusal);
+  begin_where_left();
   if (!curve_.kinds().all_linear()) {
     waypoint = unwrapped(waypoint);
     if (!is_finite(waypoint)) return refuse(number, Refusal::not_finite);
@@ -291,7 +357,9 @@ void StreamSolver::take_finish(Word number) noexcept {
 }
 
 void StreamSolver::refuse(Word number, Refusal reason) noexcept {
-  board_->write_refusal(summary_.refused++, {.item = number, .reason = reason});
+  board_->write_refusal(
+      summary_.refused++,
+      {.item = number, .reason = reason, .slot = static_cast<std::uint8_t>(summary_.holder)});
   ++summary_.reasons[static_cast<std::size_t>(reason)];
   has_refused_ = true;
 }

@@ -212,6 +212,7 @@ void PublishedCurve::begin_run(Time t, const RunBegin& how) noexcept {
   wait_for_entry(window_.knots());
   set_origin(cut_.next(), cut_.state());
   origin_.is_corner = how.is_from_rest;
+  origin_.stopped_by = how.stopped_by;
   blend_until_ = t + how.blend;
   is_searching_ = is_entry_new_ = is_prepared_ = false;
   committed_shown_ = shown_;
@@ -245,6 +246,11 @@ void PublishedCurve::append(const Waypoint& waypoint, Word item) noexcept {
     write_knots(std::max(open_, met_), settled);
   }
   open_ = settled;
+}
+
+Word PublishedCurve::waypoints_after(Time t) const noexcept {
+  if (!is_on_line()) return 0;
+  return std::min<Word>(newest_ - segment_at(*published_, summary_, t), window_.knots() - met_);
 }
 
 /// Waypoints that the open entry passes over.

@@ -14,7 +14,6 @@
 #include "ipc/solve/curve_cut.hpp"
 #include "ipc/solve/curve_summary.hpp"
 #include "ipc/solve/shown_motion.hpp"
-#include "splinecast/dimension_kind.hpp"
 
 namespace splinecast::ipc {
 
@@ -29,11 +28,9 @@ namespace splinecast::ipc {
 /// one that ends beyond the newest waypoint is planned again when a newer one comes.
 ///
 /// Knots on the board have consecutive numbers, run after run: `Summary::run` is the first knot of
-/// a run, which is its first waypoint or the state that it was entered from. The board is the only
-/// memory of the past: a solver that takes over, and one that has discarded a revision, both
-/// continue from the last commit.
-///
-/// Allocates only when constructed; one thread uses it.
+/// a run, which is its first waypoint or the state that it was entered from. A solver that takes
+/// over, and one that has discarded a revision, continue from the last commit: nothing else is
+/// remembered. Allocates only when constructed; one thread uses it.
 class PublishedCurve {
  public:
   /// Maximum number of candidates that one step builds and compares with the limits: bounds the
@@ -76,7 +73,7 @@ class PublishedCurve {
   /// The time of the run's first knot that has not settled: no append changes the run before it.
   [[nodiscard]] Time settled_until() const noexcept;
 
-  /// Whether the run is a stop from a given state, and no waypoint has come since.
+  /// Whether the run is a stop from a state, and no waypoint has come since.
   [[nodiscard]] bool is_stop() const noexcept {
     return course_ == Course::waiting && window_.knots() == 0;
   }
@@ -85,6 +82,9 @@ class PublishedCurve {
   [[nodiscard]] bool begins_after(Time t) const noexcept {
     return course_ == Course::waiting && unmet_ == 0 && origin_.number > 0 && t < origin_.time;
   }
+
+  /// Number of waypoints of the run that the committed curve is on after t.
+  [[nodiscard]] Word waypoints_after(Time t) const noexcept;
 
   /// Whether the run is a stop that moves after t, and begins at `latest` or earlier.
   [[nodiscard]] bool is_stopping(Time t, Time latest) const noexcept {
@@ -170,7 +170,7 @@ class PublishedCurve {
            t >= newest_time();
   }
 
-  /// Decides a start with limits that a cut at t would keep. Returns whether the curve has changes.
+  /// Decides a start with limits that a cut at t keeps. Returns whether the curve has changes.
   [[nodiscard]] bool decide_start(Time t, Time settled, Time keep, int& tries) noexcept;
 
   /// Searches for an entry onto the waypoints that are known, and makes it part of the curve.

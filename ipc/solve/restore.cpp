@@ -190,7 +190,8 @@ void PublishedCurve::restore_origin() noexcept {
   if (is_damaged_) return;
   set_origin(number, {state.time, state.position, state.velocity, state.acceleration});
   origin_.is_new = false;
-  origin_.is_corner = knot_.note.is_corner;
+  origin_.stopped_by = knot_.begins_stoppers_stop() ? knot_.item : 0;
+  origin_.is_corner = knot_.begins_at_rest();
   if (course_ != Course::entering || !read_knot(met_number_)) return;
   is_damaged_ = is_damaged_ || !knot_.note.arrives;
   entry_end_ = knot_.time;

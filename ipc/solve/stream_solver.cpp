@@ -66,6 +66,7 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& boar
   }
   // The last writer may have died between its commit and the stores after it.
   board_->store_consumed(summary_.consumed);
+  board_->store_holders(summary_.holders);
   outcomes_.take_over(summary_);
   if (!live_ && curve_.has_begun() && !summary_.finished) store_settled(curve_.settled_until());
 }
@@ -77,6 +78,7 @@ void StreamSolver::restore() {
       look.revision > 0 && !published_->copy_summary(look, summary_);  // fails on damage only
   curve_.restore(summary_);
   outcomes_.restore(summary_);
+  stops_.restore(board_->next_stoppers().first<kStopperTableWords>(), summary_.holders);
 }
 
 Time StreamSolver::due() const noexcept {
@@ -133,9 +135,8 @@ StepResult StreamSolver::make_revision(const Clock& clock, Time now) noexcept {
   freeze(clock, now);
   const Word consumed = consume(now);
   if (is_damaged()) return {.damaged = true};
-  if (consumed > 0 || has_starved_ || curve_.has_changes() || plan_.must_commit) {
-    return publish(clock, consumed);
-  }
+  const bool has_news = has_starved_ || plan_.must_commit || stops_.has_changes();
+  if (consumed > 0 || curve_.has_changes() || has_news) return publish(clock, consumed);
   if (!live_ || started_ < due()) return {};
   settled_at_ = started_;
   // Only the settled time has changed: stores that word, and readers keep their copies.
@@ -215,15 +216,16 @@ Word StreamSolver::consume(Time now) noexcept {
   available_ = reachable(written);
   keep_ = live_ ? now - live_->history : Time::max();
   rest_where_held();
-  is_postponed_ = false;
   entry_before_.reset();
   tries_ = PublishedCurve::kTriesPerStep;
   batch_limit_ = most_items_;
   batch_ = 0;
-  bool is_blocked = withdraw();
+  is_postponed_ = stops_where_held();
+  bool is_blocked = is_postponed_ || (!is_held() && withdraw());
   while (!is_blocked && summary_.consumed < available_ && batch_ < batch_limit_ && !is_damaged()) {
     ring_->copy(summary_.consumed, item_);
-    is_blocked = enters_before(summary_.consumed) || !has_room(item_);
+    // While a stopper holds the stream, no item adds a knot.
+    is_blocked = !is_held() && (enters_before(summary_.consumed) || !has_room(item_));
     if (is_blocked) break;
     take(summary_.consumed++);
     if (is_postponed_) {
@@ -242,35 +244,6 @@ Word StreamSolver::consume(Time now) noexcept {
   const bool waits = is_blocked && summary_.consumed == before && !curve_.has_changes();
   seen_ = waits || available_ == before ? written : summary_.consumed;
   return summary_.consumed - before;
-}
-
-/// Where a replacement from t on cuts the curve: never too late.
-Time StreamSolver::time_of_cut(Time t) const noexcept {
-  return std::max({t, settled_until_, curve_.earliest_cut()});
-}
-
-/// Whether the law holds the stream where the curve can be cut.
-bool StreamSolver::can_rest() const noexcept {
-  return rest_ && curve_.has_begun() && *rest_ >= curve_.earliest_cut();
-}
-
-/// Cuts the curve at t and begins a run there: from rest where the law holds, instead of what has
-/// settled after it.
-void StreamSolver::begin_run(Time t, const RunBegin& how) noexcept {
-  outcomes_.cut(progress_of(curve_.summary()), t);
-  if (how.is_from_rest) settled_until_ = t;
-  rests_ = rests_ || how.is_from_rest;
-  curve_.begin_run(t, how);
-  summary_.starved = false;
-  summary_.newest_time = t;
-}
-
-/// Ends a stop that is executed when the law holds the machine.
-void StreamSolver::rest_where_held() noexcept {
-  if (!can_rest() || *rest_ > settled_until_ || summary_.finished) return;
-  const Time latest = latest_from_rest(*rest_, settled_until_, live_->freeze_ahead);
-  if (curve_.is_stopping(*rest_, latest))
-    begin_run(*rest_, {.has_waypoints = false, .is_from_rest = true});
 }
 
 /// Withdraws what an earlier step or solver has left in the ring, and plans from the settled time
@@ -383,7 +356,10 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   // A table without the plan that belongs to it would show what is not in force.
   if (planner_ != nullptr)
     board_->set_commanders(has_refused_ ? std::span<const Word>{} : plan_.table);
+  if (stops_.has_changes()) board_->set_stoppers(stops_.words());
   board_->commit(summary_);
+  if (stops_.has_changes()) board_->store_holders(summary_.holders);
+  stops_.committed();
   settled_at_ = started_;
   if (summary_.newest > 0) store_settled(settled_by_commit());
   board_->store_consumed(summary_.consumed);

@@ -9,6 +9,8 @@
 #include "ipc/board/reader.hpp"
 #include "ipc/board/writer.hpp"
 #include "ipc/layout/summary.hpp"
+#include "ipc/requests/stopper_table.hpp"
+#include "ipc/requests/stoppers.hpp"
 #include "ipc/ring/item.hpp"
 #include "ipc/ring/reader.hpp"
 #include "ipc/runs/outcomes.hpp"
@@ -68,6 +70,11 @@ struct LiveOptions {
 /// others at once, as x86 and ARMv8 do, orders it without.) The time of the commit is compared with
 /// the clock as for each revision.
 ///
+/// While a stopper holds a live stream, the curve rests, or is in a stop: where it was not, one
+/// begins in the first step that finds the request, as that of a producer, in a revision of its
+/// own. Waypoints, start states and replacements with waypoints are refused; a stop and a finish
+/// are taken. After the release a run begins with the next waypoint.
+///
 /// The solver of a time law plans the law itself, in each step: see plan_with(). Items that an
 /// earlier step or solver has left in the ring are withdrawn first, because they were planned for a
 /// time that has passed.
@@ -86,6 +93,12 @@ class StreamSolver {
 
   /// The stream is a time law, of which this is the planner; it outlives the solver.
   void plan_with(LawPlanner& planner) noexcept { planner_ = &planner; }
+
+  /// A live stream heeds the requests of these stoppers, which outlive the solver.
+  void heed(StopRequests& stoppers) noexcept { stoppers_ = &stoppers; }
+
+  /// Whether a stopper holds the stream, as of the last step.
+  [[nodiscard]] bool is_held() const noexcept { return stops_.holders() > 0; }
 
   /// Takes the items in the ring, up to a bounded batch, and publishes the result as one revision.
   /// On a live stream it also stores settled_until when that is due, without a new revision.
@@ -128,6 +141,7 @@ class StreamSolver {
   [[nodiscard]] Time time_of_cut(Time t) const noexcept;
   [[nodiscard]] bool can_rest() const noexcept;
   void rest_where_held() noexcept;
+  [[nodiscard]] bool stops_where_held() noexcept;
   void begin_run(Time t, const RunBegin& how) noexcept;
   [[nodiscard]] bool is_damaged() const noexcept { return lacks_summary_ || curve_.is_damaged(); }
   [[nodiscard]] Word reachable(Word written) const noexcept;
@@ -138,6 +152,11 @@ class StreamSolver {
   [[nodiscard]] static bool is_stop(const RingItem& item) noexcept {
     return item.kind == ItemKind::replace && item.count == 0;
   }
+  /// Whether an item would move the machine.
+  [[nodiscard]] static bool moves(const RingItem& item) noexcept {
+    return item.kind != ItemKind::finish && item.kind != ItemKind::rate && !is_stop(item);
+  }
+  void begin_where_left() noexcept;
   void take(Word number) noexcept;
   void take_waypoint(Word number) noexcept;
   [[nodiscard]] Waypoint unwrapped(const Waypoint& given) noexcept;
@@ -201,8 +220,10 @@ class StreamSolver {
   Word available_ = 0;                   ///< this step takes items before this one
   ReplacementQueue replacements_;
   LawPlanner* planner_ = nullptr;  ///< of a time law
-  LawPlan plan_;                   ///< of this revision
-  bool has_refused_ = false;       ///< the revision has refused an item
+  StopRequests* stoppers_ = nullptr;
+  StopperTable stops_;
+  LawPlan plan_;              ///< of this revision
+  bool has_refused_ = false;  ///< the revision has refused an item
 };
 
 }  // namespace splinecast::ipc

@@ -30,18 +30,19 @@ void PublishedCurve::write_origin() noexcept {
   const auto zeros = std::span(kZeros).first(published_->smooths() ? window_.dimensions() : 0);
   std::ranges::copy(origin_state_.acceleration(), values_.begin());
   if (!enters) core::align_rotations(window_.kinds(), origin_state_.velocity(), values_);
+  const bool is_stopped = !enters && origin_.stopped_by > 0;
   const std::size_t known = course_ == Course::entering ? search_.end().known - 1 - met_ : 0;
   board_->write(origin_.number, {.is_new = true,
                                  .note = {.form = enters ? SegmentForm::entry : SegmentForm::stop,
                                           .starts = true,
                                           .newer_knots = static_cast<std::uint32_t>(known),
-                                          .is_corner = origin_.is_corner},
+                                          .is_corner = origin_.is_corner || is_stopped},
                                  .time = origin_.time,
                                  .position = origin_state_.position(),
                                  .velocity = origin_state_.velocity(),
                                  .acceleration = values_,
                                  .residual = zeros,
-                                 .item = enters ? run_item_ : 0});
+                                 .item = enters ? run_item_ : origin_.stopped_by});
   note_change(origin_.time);
 }
 

@@ -32,7 +32,7 @@ void StreamSweep::look_for_names() {
   to_take_.clear();
   std::set<std::string> standing = regions_.streams();
   // The ring of a law is made by its solver, once there is a commander.
-  for (const auto& [law, commanders] : regions_.commanders()) standing.insert(law);
+  for (const auto& [law, commanders] : regions_.commanders().names()) standing.insert(law);
   for (const std::string& stream : standing) {
     if (is_wanted(stream)) members_.try_emplace(stream);
   }

@@ -29,7 +29,8 @@ enum class SweepNews : std::uint8_t {
   refused,         ///< an item was refused, the first one for its reason
   beyond_limits,   ///< the curve exceeds a limit with a waypoint that was taken, the first one
   following,       ///< with Beyond::enter: it meets no waypoint, cannot follow, or follows again
-  commander,       ///< of a time law: a commander is not heard, or holds it unasked
+  commander,       ///< of a time law: a commander is not heard, or holds it unasked; of another
+                   ///< stream: a stopper holds it, or is not heard
   postponed,       ///< memory or descriptors are lacking; retried periodically
   given_up,        ///< it cannot be solved; retried when its files have been replaced
   gone,            ///< a stream that was found by a pattern no longer exists
@@ -41,10 +42,10 @@ enum class SweepNews : std::uint8_t {
 /// A sweep polls one cache line of each stream and steps the streams that have work to do. It polls
 /// a stream that has been idle for a second only every 20 ms, in turn with other idle streams,
 /// because such a poll misses the caches for that line and its page. It reads which regions have
-/// come and gone, so that the law of a new commander is stepped at once. Every 50 ms it also looks
-/// for new streams, and for wanted streams whose solver in another process has died. A sweep
-/// attaches to at most one stream, because that maps memory, and the others must not wait long.
-/// Allocates only when streams come and go.
+/// come and gone, so that the law of a new commander, and the stream of a new stopper, is stepped
+/// at once. Every 50 ms it also looks for new streams, and for wanted streams whose solver in
+/// another process has died. A sweep attaches to at most one stream, because that maps memory, and
+/// the others must not wait long. Allocates only when streams come and go.
 class StreamSweep {
  public:
   /// Called when the state of a stream has changed, and for its first refusals, excess and finish.
@@ -180,6 +181,7 @@ class StreamSweep {
   Time pause_;
   std::size_t quiet_sweeps_;  ///< one sweep out of this many polls an idle stream
   std::size_t sweeps_ = 0;
+  Word stoppers_ = 0;  ///< version of the stoppers when all streams were polled last
   bool all_quiet_ = false;
   bool has_detached_ = false;
 };

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <utility>
 
 #include "ipc/roles/internals.hpp"
 #include "ipc/sweep/many_streams.hpp"
@@ -46,7 +47,8 @@ void StreamSweep::take_up(const Clock& clock) {
 /// Collects the streams that have work to do.
 void StreamSweep::collect_calling() {
   ++sweeps_;
-  const bool looks_at_all = all_quiet_;
+  const Word stoppers = regions_.stoppers().version();
+  const bool looks_at_all = all_quiet_ || std::exchange(stoppers_, stoppers) != stoppers;
   const Time quiet_since = now_ - kQuietAfter;
   all_quiet_ = !watches_.empty();
   calling_.clear();

@@ -1,8 +1,10 @@
 #include "ipc/verification/recorded_decisions.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "ipc/ring/item.hpp"
+#include "ipc/runs/run_edges.hpp"
 #include "splinecast/waypoint.hpp"
 
 namespace splinecast::ipc {
@@ -29,6 +31,31 @@ bool begins_run(const SegmentCopy& before, const SegmentCopy& segment,
   return segment.kind == SegmentKind::stop && !segment.has_waypoint && !is_behind(before, segment);
 }
 
+Replacements::Replacements(const StreamRecord& record) : items_(record.items) {
+  for (const SegmentCopy& segment : record.segments) {
+    const Word stopped_by = segment.origin.stopped_by;
+    if (stopped_by > 0) stops_.push_back({stop_origin(stopped_by).items, segment.left});
+  }
+  // A record of another program may have them in any order.
+  std::ranges::stable_sort(stops_, {}, &Stop::before);
+}
+
+std::optional<Word> Replacements::find(Word from, Word end) const noexcept {
+  const auto item = items_.find(ItemKind::replace, from, end);
+  const auto stop = std::ranges::upper_bound(stops_, from, {}, &Stop::before);
+  if (stop == stops_.end() || stop->before > end) return item;
+  return std::min(stop->before, item.value_or(stop->before));
+}
+
+std::optional<Time> Replacements::time_before(Word end) const noexcept {
+  Word item = std::min(end, items_.size());
+  while (item > items_.first() && !items_.is_taken(item - 1, ItemKind::replace)) --item;
+  const auto after = std::ranges::upper_bound(stops_, end, {}, &Stop::before);
+  const bool is_stop = after != stops_.begin() && std::prev(after)->before >= item;
+  if (is_stop) return std::prev(after)->time;
+  return item > items_.first() ? std::optional(items_.waypoint(item - 1).time) : std::nullopt;
+}
+
 bool RecordedDecisions::is_behind_entry(std::size_t i) const noexcept {
   return i > 0 && is_behind(before(i), segments_[i]);
 }
@@ -51,10 +78,7 @@ std::size_t RecordedDecisions::end_of_run(std::size_t i,
 
 /// The time of the last replacement before the waypoints of the run that begins with segment i.
 std::optional<Time> RecordedDecisions::replaced_from(std::size_t i) const noexcept {
-  Word item = std::min(*segments_[i].origin.item, record_.items.size());
-  const Word first = record_.items.first();
-  while (item > first && !record_.items.is_taken(item - 1, ItemKind::replace)) --item;
-  return item > first ? std::optional(record_.items.waypoint(item - 1).time) : std::nullopt;
+  return replacements_.time_before(*segments_[i].origin.item);
 }
 
 bool RecordedDecisions::begins_at_cut(std::size_t i) const noexcept {
@@ -75,7 +99,7 @@ bool RecordedDecisions::begins_elsewhere(std::size_t i) const noexcept {
   const auto entry = std::ranges::find_if(segments_, has_item);
   const Word first = entry != segments_.end() ? *entry->origin.item : items;
   const auto waypoint = record_.items.find(ItemKind::waypoint, 0, first);
-  return waypoint && record_.items.find(ItemKind::replace, *waypoint, first).has_value();
+  return waypoint && replacements_.find(*waypoint, first).has_value();
 }
 
 bool RecordedDecisions::is_last_run(std::optional<Word> run_item) const noexcept {

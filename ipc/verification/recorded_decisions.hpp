@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "ipc/board/segment.hpp"
 #include "ipc/memory/word.hpp"
 #include "ipc/verification/stream_record.hpp"
+#include "splinecast/time.hpp"
 
 namespace splinecast::ipc {
 
@@ -18,13 +20,41 @@ namespace splinecast::ipc {
 [[nodiscard]] bool begins_run(const SegmentCopy& before, const SegmentCopy& segment,
                               std::optional<Word> run_item) noexcept;
 
+/// What took the place of waypoints that were sent: the replacements and stops among the items of a
+/// record that were taken, and the stops of stoppers, which its segments show.
+class Replacements {
+ public:
+  /// Uses the record's items later. Allocates.
+  explicit Replacements(const StreamRecord& record);
+
+  /// The number of the first replacement from item `from` on and before item `end`; or, if that
+  /// comes earlier, of the first item after a stopper's stop that was carried out after item `from`
+  /// and not after item `end`.
+  [[nodiscard]] std::optional<Word> find(Word from, Word end) const noexcept;
+
+  /// The time from which on the last one before item `end` replaces.
+  [[nodiscard]] std::optional<Time> time_before(Word end) const noexcept;
+
+ private:
+  /// The stop of a stopper.
+  struct Stop {
+    Word before;  ///< the first item after it
+    Time time;
+  };
+
+  const SentItems& items_;
+  std::vector<Stop> stops_;
+};
+
 /// The solver's decisions, derived from the segments of a record: which are entries, where a run
 /// begins and ends. Segments are counted from 0. Changes nothing; safe from any thread.
 class RecordedDecisions {
  public:
   /// The record outlives this.
-  explicit RecordedDecisions(const StreamRecord& record) noexcept
-      : record_(record), segments_(record.segments) {}
+  explicit RecordedDecisions(const StreamRecord& record)
+      : record_(record), segments_(record.segments), replacements_(record) {}
+
+  [[nodiscard]] const Replacements& replacements() const noexcept { return replacements_; }
 
   /// Whether segment i is an entry onto a target.
   [[nodiscard]] bool is_entry(std::size_t i) const noexcept { return ipc::is_entry(segments_[i]); }
@@ -62,6 +92,7 @@ class RecordedDecisions {
 
   const StreamRecord& record_;
   std::span<const SegmentCopy> segments_;
+  Replacements replacements_;
 };
 
 /// Follows the runs of a stream by its settled segments, to find those with which a part of a

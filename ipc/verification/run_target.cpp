@@ -63,7 +63,7 @@ void RunTarget::list_plan(Word first, const core::LawState& from, std::size_t do
 /// or to a waypoint that is not later than the one before it.
 void RunTarget::list_after(Word first, std::optional<Time> after) {
   const Word items = record_.items.size();
-  const Word replaced = record_.items.find(ItemKind::replace, first, items).value_or(items);
+  const Word replaced = replacements_.find(first, items).value_or(items);
   for (Word item = first;;) {
     const auto next = record_.items.find(ItemKind::waypoint, item, replaced);
     if (!next) return;

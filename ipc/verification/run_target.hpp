@@ -9,6 +9,7 @@
 #include "core/laws/rate_curve.hpp"
 #include "core/online/sliding_window.hpp"
 #include "ipc/memory/word.hpp"
+#include "ipc/verification/recorded_decisions.hpp"
 #include "ipc/verification/stream_record.hpp"
 #include "splinecast/state.hpp"
 #include "splinecast/time.hpp"
@@ -21,9 +22,11 @@ namespace splinecast::ipc {
 /// thread uses it.
 class RunTarget {
  public:
-  /// The record outlives this. Throws std::invalid_argument for window options out of range.
-  explicit RunTarget(const StreamRecord& record)
+  /// The record and its replacements outlive this. Throws std::invalid_argument for window options
+  /// out of range.
+  RunTarget(const StreamRecord& record, const Replacements& replacements)
       : record_(record),
+        replacements_(replacements),
         window_(record.items.dimensions(), core::with_kinds(record.window, record.kinds)),
         values_(3 * record.items.dimensions()),
         begin_(record.items.dimensions()) {}
@@ -98,6 +101,7 @@ class RunTarget {
   [[nodiscard]] std::span<const double> newest_position() const noexcept;
 
   const StreamRecord& record_;
+  const Replacements& replacements_;
   core::SlidingWindow window_;
   std::vector<double> values_;  ///< scratch
   State begin_;                 ///< in which the current run begins

@@ -15,7 +15,7 @@ StreamReplay::StreamReplay(const StreamRecord& record, std::set<std::size_t> lat
       late_cuts_(std::move(late_cuts)),
       segments_(record.segments),
       decisions_(record),
-      target_(record),
+      target_(record, decisions_.replacements()),
       begin_(record),
       solved_(record.items.dimensions()),
       end_(record.items.dimensions()),
@@ -98,7 +98,7 @@ bool StreamReplay::begin_run(std::size_t i) {
   const Word first_items = segment.origin.item.value_or(items);
   const bool is_same_run =
       i > 0 && !is_first_of_part && target_.window().knots() == 0 &&
-      (target_.window().is_later_run() || !record_.items.find(ItemKind::replace, 0, first_items));
+      (target_.window().is_later_run() || !decisions_.replacements().find(0, first_items));
   if (is_later && !is_same_run) target_.begin_run();
   bool begins_here = !is_same_run || decisions_.begins_at_cut(i);
   if (!begins_here && decisions_.may_begin_at_late_cut(i)) {
@@ -200,7 +200,7 @@ bool StreamReplay::rests_at_last_waypoint() {
 /// Requires that each waypoint before item `end` is on the curve or was replaced.
 bool StreamReplay::expect_all_used(Word end) {
   const auto missed = record_.items.find(ItemKind::waypoint, target_.used(), end);
-  if (!missed || record_.items.find(ItemKind::replace, *missed, end)) return true;
+  if (!missed || decisions_.replacements().find(*missed, end)) return true;
   const std::size_t last = segments_.empty() ? 0 : std::min(next_, segments_.size() - 1);
   return differ(last, std::string("waypoint of item ") + std::to_string(*missed), "none",
                 in_words(record_.items.waypoint(*missed).time));

@@ -10,13 +10,13 @@
 #include "ipc/law/commander_record.hpp"
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/board_control.hpp"
-#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/header.hpp"
+#include "ipc/layout/request_control.hpp"
 #include "ipc/layout/separation.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
-#include "ipc/owned/commander.hpp"
+#include "ipc/owned/request.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/solver.hpp"
 #include "splinecast/streams.hpp"
@@ -66,7 +66,7 @@ StreamImage law_image(std::vector<std::uint8_t> script) {
   StreamImage image;
   {
     ipc::OwnerLock lock(commander, RegionKind::commander);
-    ipc::OwnedCommander own = ipc::own_commander(commander, {}, {}, lock);
+    ipc::OwnedRequest own = ipc::own_request(commander, ipc::RegionKind::commander, {}, {}, lock);
     testing::FixedClock clock;
     clock.time = kBegin;
     Solver solver(name, SolverOptions{});

@@ -94,37 +94,6 @@ TEST(FuzzSeeds, HaveUndamagedSegmentsOfEveryForm) {
   EXPECT_EQ(forms.size(), static_cast<std::size_t>(core::kSegmentForms));
 }
 
-/// How many of the fields whose meaning begins with `reserved` have other words than 0, in the
-/// words of a region from `begin` on.
-std::size_t used_reserves(std::span<const ipc::Field> fields, std::span<const ipc::Word> region,
-                          std::size_t begin, std::size_t& reserved) {
-  std::size_t used = 0;
-  for (const ipc::Field& field : fields) {
-    if (!field.meaning.starts_with("reserved")) continue;
-    const auto words = region.subspan(begin + field.offset.words, field.size.words);
-    ++reserved;
-    if (std::ranges::any_of(words, [](ipc::Word word) { return word != 0; })) ++used;
-  }
-  return used;
-}
-
-TEST(FuzzSeeds, HaveZerosInReservedFields) {
-  constexpr std::size_t kBody = ipc::kBodyOffset / sizeof(ipc::Word);
-  for (const Seed& seed : make_seeds()) {
-    const auto& board = seed.image.board;
-    const std::size_t control = ipc::decode_header(board).control / sizeof(ipc::Word);
-    std::size_t reserved = 0;
-    EXPECT_EQ(used_reserves(ipc::kHeaderFields, board, 0, reserved), 0) << seed.name;
-    EXPECT_EQ(used_reserves(ipc::kHeaderFields, seed.image.ring, 0, reserved), 0) << seed.name;
-    EXPECT_EQ(used_reserves(ipc::kBodyFields, board, kBody, reserved), 0) << seed.name;
-    for (std::size_t cell = 0; cell < 2; ++cell) {
-      const std::size_t summary = control + ipc::kSummarySlot + cell * ipc::kSummaryWords;
-      EXPECT_EQ(used_reserves(ipc::kSummaryFields, board, summary, reserved), 0) << seed.name;
-    }
-    EXPECT_EQ(reserved, 3) << "stoppers; holders of both cells";
-  }
-}
-
 TEST(FuzzSeeds, AnEncodedImageDecodesToTheSameImage) {
   for (const Seed& seed : make_seeds()) {
     const StreamImage again = decode(encode(seed.image));

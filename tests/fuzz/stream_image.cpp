@@ -9,10 +9,10 @@
 
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/board_control.hpp"
-#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/publication.hpp"
+#include "ipc/layout/request_control.hpp"
 #include "ipc/layout/ring_control.hpp"
 #include "ipc/layout/summary.hpp"
 

@@ -27,15 +27,15 @@ from pathlib import Path
 PROJECT = Path(__file__).resolve().parent.parent.parent
 EXPORTS = Path(__file__).resolve().parent / "exports.txt"
 PAGE = PROJECT / "docs" / "house.md"
-MOST_FILES, MOST_FILES_OF_TESTS, MOST_LINES, MEDIAN_LINES, MOST_FUNCTION_LINES, MOST_HEADERS = 20, 30, 400, 150, 40, 23
+MOST_FILES, MOST_FILES_OF_TESTS, MOST_LINES, MEDIAN_LINES, MOST_FUNCTION_LINES, MOST_HEADERS = 20, 30, 400, 150, 40, 24
 
 # The rooms from the lowest to the highest. A file includes only files of its own room and of lower ones.
 ROOMS = {
     "core": "simd basics polynomial limits slopes forms laws solvers batch methods online",
-    "ipc": "memory layout mapping ring board runs solve options sampling law owned roles sweep verification/promises verification arguments c "
+    "ipc": "memory layout mapping requests ring board runs solve options sampling law owned roles sweep verification/promises verification arguments c "
            "python/values python",
     "apps": "process files mcap/format mcap/output mcap/input messages output pages timing tables tables/topics "
-            "tables/ulog cli recover contents recordings limits streams rate record/format record/watch record/output "
+            "tables/ulog cli recover contents recordings limits streams rate stop record/format record/watch record/output "
             "record/verification record advise fit check replay trials demo machine latency soak completion",
 }
 # The installed C header, which may be included as an installed header of C++ is.

@@ -128,6 +128,10 @@ for linked in shared static pkg_config; do
     wait "$example" || { echo "an example with $linked has failed:"; cat "$work"/out/[13456789]*; exit 1; }
   done
 
+  "$work/$linked/11_stop" "$stream.$linked.motion" 0.1 >"$work/out/11_stop" 2>&1 ||
+    { echo "11_stop with $linked has failed:"; cat "$work/out/11_stop"; exit 1; }
+
+  printed 11_stop "'$stream.$linked.motion' is released"
   printed 1_producer '[0-9]+ waypoints sent, [0-9]+ late, 0 refused'
   printed 2_controller 0.3  # where the motion begins
   [ "$(sort -u "$work/out/2_controller" | wc -l)" -gt 10 ] || { echo "2_controller saw no motion"; exit 1; }

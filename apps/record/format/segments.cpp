@@ -11,6 +11,7 @@ constexpr std::uint8_t kEndsAtWaypoint = 2;
 constexpr std::uint8_t kHasItem = 4;
 constexpr std::uint8_t kHasStep = 8;
 constexpr std::uint8_t kIsCorner = 16;
+constexpr std::uint8_t kIsStopped = 32;
 constexpr std::uint8_t kHasKnots = 1;
 constexpr std::uint8_t kIsLaterRun = 2;
 constexpr std::uint8_t kHasAccelerations = 1;
@@ -21,7 +22,7 @@ void put(ByteWriter& out, const ipc::SegmentCopy& segment) {
   const auto flags = static_cast<std::uint8_t>(
       (segment.has_waypoint ? kHasWaypoint : 0) | (origin.ends_at_waypoint ? kEndsAtWaypoint : 0) |
       (origin.item ? kHasItem : 0) | (segment.acceleration_step.empty() ? 0 : kHasStep) |
-      (segment.is_corner ? kIsCorner : 0));
+      (segment.is_corner ? kIsCorner : 0) | (origin.stopped_by > 0 ? kIsStopped : 0));
   out.put(segment.number)
       .put(segment.next)
       .put(segment.left)
@@ -34,7 +35,7 @@ void put(ByteWriter& out, const ipc::SegmentCopy& segment) {
       .put(segment.newer_knots)
       .put(origin.right_newer_knots)
       .put(origin.item.value_or(0))
-      .put(origin.known)
+      .put(origin.stopped_by > 0 ? origin.stopped_by : origin.known)
       .put(segment.coefficients)
       .put(segment.waypoint)
       .put(segment.acceleration_step);
@@ -62,7 +63,8 @@ ipc::SegmentCopy take_segment(ByteReader& in, std::size_t dimensions) {
   segment.origin.right_newer_knots = in.take<std::uint32_t>();
   const auto item = in.take<ipc::Word>();
   if ((flags & kHasItem) != 0) segment.origin.item = item;
-  segment.origin.known = in.take<ipc::Word>();
+  const bool is_stopped = (flags & kIsStopped) != 0;
+  (is_stopped ? segment.origin.stopped_by : segment.origin.known) = in.take<ipc::Word>();
   segment.origin.ends_at_waypoint = (flags & kEndsAtWaypoint) != 0;
   segment.has_waypoint = (flags & kHasWaypoint) != 0;
   segment.is_corner = (flags & kIsCorner) != 0;

@@ -23,8 +23,10 @@ enum class EventKind : std::uint8_t {
   retired,
   lost,
   following,
+  stopped,   ///< a stopper holds the stream
+  released,  ///< it does not any more
 };
-inline constexpr std::uint8_t kEventKinds = 11;
+inline constexpr std::uint8_t kEventKinds = 13;
 
 /// An event that a batch has.
 struct EventNote {

@@ -10,6 +10,7 @@
 #include "apps/record/watch/events.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
+#include "ipc/owned/stoppers.hpp"
 
 namespace splinecast::apps::record {
 namespace {
@@ -69,6 +70,7 @@ void BoardWatch::look(Batch& batch) {
   put_counts(batch);
   put_excesses(batch);
   put_following(batch);
+  put_stops(batch);
   const bool was_finished = is_finished_;
   summary_ = settled_.summary();
   put_segments(batch);
@@ -159,6 +161,17 @@ void BoardWatch::put_following(Batch& batch) {
   const ipc::Following now = settled_.summary().following();
   if (now == summary_.following()) return;
   put_event(batch, EventKind::following, fmt::format(R"("state":"{}")", ipc::to_string(now)));
+}
+
+/// Writes an event for each request of a stopper that is in force now.
+void BoardWatch::put_stops(Batch& batch) {
+  if (settled_.summary().revision == summary_.revision) return;
+  for (const ipc::StopperEntry& stopper : ipc::stoppers_of(reader_)) {
+    const auto [last, is_new] = stops_.try_emplace(stopper.id, stopper.number);
+    if (!is_new && std::exchange(last->second, stopper.number) == stopper.number) continue;
+    put_event(batch, stopper.holds ? EventKind::stopped : EventKind::released,
+              fmt::format(R"("stopper":{},"request":{})", json_text(stopper.name), stopper.number));
+  }
 }
 
 bool BoardWatch::wants_start(const Batch& batch) const noexcept {

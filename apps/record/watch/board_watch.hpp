@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -59,6 +60,7 @@ class BoardWatch {
   void put_counts(Batch& batch);
   void put_excesses(Batch& batch);
   void put_following(Batch& batch);
+  void put_stops(Batch& batch);
   void put_segments(Batch& batch);
   void put_restart(Batch& batch, Restart restart);
   void try_restart(Batch& batch, const ipc::SegmentCopy& before);
@@ -80,7 +82,8 @@ class BoardWatch {
   ipc::Summary summary_;   ///< of the last look
   ipc::SegmentCopy last_;  ///< the newest segment that has been read
   std::vector<ipc::RefusedItem> refused_;
-  bool looks_back_ = false;  ///< in look_back()
+  std::map<ipc::Word, ipc::Word> stops_;  ///< last request in force of each stopper, by its id
+  bool looks_back_ = false;               ///< in look_back()
   bool has_last_ = false;
   bool needs_start_ = false;
   bool is_finished_ = false;

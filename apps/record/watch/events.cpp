@@ -11,8 +11,8 @@ namespace splinecast::apps::record {
 namespace {
 
 constexpr std::array<std::string_view, kEventKinds> kNames{
-    "attached", "underrun", "deadline", "late", "refusal",  "takeover",
-    "limit",    "finished", "retired",  "lost", "following"};
+    "attached", "underrun", "deadline", "late",      "refusal", "takeover", "limit",
+    "finished", "retired",  "lost",     "following", "stopped", "released"};
 constexpr std::array kTriggers{EventKind::underrun, EventKind::deadline, EventKind::late,
                                EventKind::refusal,  EventKind::takeover, EventKind::limit};
 

@@ -26,6 +26,7 @@ struct ItemRefusal {
   std::optional<Time> time{};  ///< of the item; unset if the ring has overwritten it
   Refusal reason{};
   std::optional<LimitExcess> excess{};  ///< for `beyond_limits`, while the board has it
+  std::string by{};  ///< for `stopped`: the name of a stopper, while the board has it
 };
 
 /// `item 17 refused: too late (time 123 ns)`; `beyond_limits` adds the excess.
@@ -225,6 +226,11 @@ class Producer {
   /// kept); reads the board; no system call except the search for a solver, as in append.
   /// Allocates. Producer's thread only. Throws std::bad_alloc only.
   [[nodiscard]] std::optional<ReplacementBegin> replacement_begin();
+
+  /// The names of the stoppers that hold the stream, by the newest revision: who `stopped` an item.
+  /// See Stopper. Reads the board; no system call except the search for a solver, as in append.
+  /// Allocates. Producer's thread only. Throws std::bad_alloc only.
+  [[nodiscard]] std::vector<std::string> stopped_by();
 
   /// The time of the stream's clock: of a live stream CLOCK_MONOTONIC, of a stream that follows a
   /// law the law's stream time; 0 for a recorded stream.

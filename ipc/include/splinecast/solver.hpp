@@ -89,7 +89,8 @@ class Solver {
 
   /// Of a time law: adds what a person must know of its commanders to `out`, one sentence each:
   /// those that are not heard, and those that hold the law because their dead man has fired or
-  /// their request is damaged. Each once, as long as it lasts. Looks every 20 ms. Allocates.
+  /// their request is damaged. Of another live stream: its stoppers that hold it, and those that
+  /// are not heard. Each once, as long as it lasts. Looks every 20 ms. Allocates.
   void take_commander_faults(std::vector<std::string>& out);
 
   /// `item 17, acceleration of dimension 2 (wrist) is …`; attached() only.

@@ -39,8 +39,10 @@ enum class AppendStatus : std::uint8_t {
                     ///< compared_with_now()
   elsewhere,  ///< the first waypoint or a start state of a live stream is not where an earlier
               ///< stream of the name has left the machine; see Producer::why_elsewhere()
+  stopped,    ///< a stopper holds the stream, which takes stops and a finish only; see
+              ///< Producer::stopped_by()
 };
-inline constexpr std::uint8_t kAppendStatuses = 16;
+inline constexpr std::uint8_t kAppendStatuses = 17;
 
 /// Why the solver refused an item that the ring had accepted. Each reason has its own counter.
 enum class Refusal : std::uint8_t {
@@ -61,8 +63,9 @@ enum class Refusal : std::uint8_t {
   beyond_limits = 14,      ///< the curve would exceed a limit, and Beyond::refuse is set
   cannot_follow = 15,      ///< with Beyond::enter: no waypoint has been met for 3 s, and no
                            ///< entry from rest can lead to this one
+  stopped = 16,            ///< a stopper held the stream; see ItemRefusal::by
 };
-inline constexpr std::uint8_t kRefusals = 16;
+inline constexpr std::uint8_t kRefusals = 17;
 
 /// What became of an item that the ring has accepted.
 enum class OutcomeKind : std::uint8_t {
@@ -71,7 +74,7 @@ enum class OutcomeKind : std::uint8_t {
                 ///< it
   in_force,     ///< the curve is at the waypoint, or does what the item asks, at `time`
   passed_over,  ///< the curve goes from before the waypoint to a later one
-  withdrawn,    ///< a replacement or a stop took its place
+  withdrawn,    ///< a replacement or a stop, also that of a stopper, took its place
   refused,      ///< by the solver, for `reason`
   forgotten,    ///< not known any more: see Producer::outcome()
 };

@@ -34,6 +34,7 @@ from ._splinecast import (
     Snapshot,
     Solver,
     State,
+    Stopper,
     __version__,
     cross_validated_lambda,
     fit,
@@ -65,6 +66,6 @@ __all__ = [
     "ItemRefusal", "LawRate", "LimitExcess", "Limits", "MotionPeaks", "NoSuchStream", "OutOfResources", "OutcomeKind",
     "OutcomeWay", "Producer", "Progress", "RateCommander", "Reader", "Refusal", "Refusals", "Refused", "ReplacementBegin",
     "ReplacePreview", "SampleStatus", "Segment",
-    "SegmentKind", "Snapshot", "Solver", "State", "StepResult", "StreamBusy", "__version__", "cross_validated_lambda",
-    "fit", "methods", "remove", "streams",
+    "SegmentKind", "Snapshot", "Solver", "State", "StepResult", "Stopper", "StreamBusy", "__version__",
+    "cross_validated_lambda", "fit", "methods", "remove", "streams",
 ]

@@ -267,6 +267,8 @@ class Producer:
         Refused
             The ring refuses the state: see its `status`.
         """
+    def stopped_by(self) -> List[str]:
+        """Return the names of the stoppers that hold the stream: see `Stopper`. Reads the board."""
     def old_end(self) -> Optional[Tuple[int, NDArray[np.float64]]]:
         """Return where an earlier live stream of this name has left the machine.
 
@@ -896,6 +898,92 @@ class RateCommander:
     @property
     def is_closed(self) -> bool:
         """Whether the commander is closed."""
+
+class Stopper:
+    """Stops a live stream from any process: a latched stop. It is not a safety function.
+
+    The next step of the solver begins a stop at the settled time, and then refuses waypoints, start states and
+    replacements as `stopped` until all stoppers of the stream have released it. A finish is taken, and ends the stream
+    where the stop rests. The request stays in force when this object or its process ends, when the solver ends, and
+    when the stream is created again. It may be made before there is a stream. A recorded stream and a time law have no
+    stoppers.
+
+    Parameters
+    ----------
+    stream : str
+        The stream's name.
+    stopper : str
+        The stopper's name, such as 'operator' or 'panel'.
+    mode : int
+        Permission bits of the region.
+    group : int, optional
+        Group of the region.
+    owner : int, optional
+        A further user whose regions are trusted.
+
+    Raises
+    ------
+    StreamBusy
+        The stream has a living stopper of this name.
+    BadRequest
+        An invalid name.
+    BadRegion
+        Shared memory is full, or the files of that name cannot be used.
+    """
+
+    def __init__(
+        self,
+        stream: str,
+        stopper: str,
+        *,
+        mode: int = 0o600,
+        group: Optional[int] = None,
+        owner: Optional[int] = None,
+    ) -> None: ...
+    def stop(self, *, wait: Optional[Seconds] = None) -> int:
+        """Request that the stream stop, and stay. Does nothing if that is requested already.
+
+        Parameters
+        ----------
+        wait : float, optional
+            Return when the request is in force: when the stream's solver has committed it. For at most this time [s].
+            Without it, do not wait.
+
+        Returns
+        -------
+        int
+            The number of the request.
+
+        Raises
+        ------
+        TimeoutError
+            The request is not in force after `wait`. It remains.
+        """
+    def release(self, *, wait: Optional[Seconds] = None) -> int:
+        """Withdraw the request. `wait` and the result are those of `stop`."""
+    def close(self) -> None:
+        """Give the name up. Does not release the stream. Closing again does nothing."""
+    def __enter__(self: _Self) -> _Self:
+        """Return the stopper."""
+    def __exit__(
+        self,
+        kind: Optional[Type[BaseException]],
+        value: Optional[BaseException],
+        traceback: Optional[TracebackType],
+    ) -> None:
+        """Close. Does not release the stream."""
+    @property
+    def is_latched(self) -> bool:
+        """Whether this stopper, or an earlier one of its name, requests the stop."""
+    @property
+    def stream(self) -> str:
+        """The stream's name."""
+    @property
+    def stopper(self) -> str:
+        """The stopper's name."""
+    @property
+    def is_closed(self) -> bool:
+        """Whether the stopper is closed."""
 
 class Curve:
     """A piecewise polynomial of D dimensions, made by `fit` or `Snapshot.curve`."""

@@ -66,11 +66,13 @@ class ItemRefusal(NamedTuple):
     time: Optional[int]  #: [ns]; None if the ring has overwritten the item
     reason: Refusal
     excess: Optional[LimitExcess]  #: for BEYOND_LIMITS, while the board has it
+    by: str  #: for STOPPED: a stopper's name, while the board has it; else ''
 
     def __str__(self) -> str:
         at = "" if self.time is None else f" (time {self.time} ns)"
         why = "" if self.excess is None else f": {self.excess.text}"
-        return f"item {self.item} refused: {self.reason}{at}{why}"
+        who = f" by '{self.by}'" if self.by else ""
+        return f"item {self.item} refused: {self.reason}{who}{at}{why}"
 
 
 class Refusals(List[ItemRefusal]):

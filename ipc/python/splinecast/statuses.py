@@ -32,6 +32,7 @@ class AppendStatus(_Status):
     CANNOT_FOLLOW = 13  #: no waypoint met for 3 s, and the curve moves until this time
     TOO_FAR_AHEAD = 14  #: live streams without a law: more than `horizon` after now
     ELSEWHERE = 15  #: the start is not where an earlier live stream has left the machine
+    STOPPED = 16  #: a stopper holds the stream: see `Producer.stopped_by`
 
 
 class Refusal(_Status):
@@ -52,6 +53,7 @@ class Refusal(_Status):
     ZERO_QUATERNION = 13  #: a quaternion has length 0, or one outside 1e-100 to 1e100
     BEYOND_LIMITS = 14  #: the curve would exceed a limit, and the solver refuses such waypoints
     CANNOT_FOLLOW = 15  #: no waypoint met for 3 s, and no entry from rest can lead to this one
+    STOPPED = 16  #: a stopper held the stream
 
 
 class OutcomeKind(_Status):

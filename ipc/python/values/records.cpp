@@ -40,7 +40,8 @@ py::object to_record(const ItemRefusal& refusal, std::span<const std::string> na
   py::object excess = py::none();
   if (refusal.excess) excess = to_record(*refusal.excess, in_words(*refusal.excess, names));
   return type("ItemRefusal")(refusal.item, time,
-                             member("Refusal", static_cast<std::uint8_t>(refusal.reason)), excess);
+                             member("Refusal", static_cast<std::uint8_t>(refusal.reason)), excess,
+                             refusal.by);
 }
 
 py::object to_record(const Refusals& refusals, std::span<const std::string> names) {

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <string>
 
+#include "splinecast/producer.hpp"
 #include "tests/apps/rate/rate.hpp"
 
 /// `rate` with real processes: several commanders, their death, removal.
@@ -145,6 +146,15 @@ TEST_F(Rate, ARateAboveTheLargestIsWrongUsage) {
             std::string::npos)
       << refused.err;
   EXPECT_EQ(commander("operator")["rate"], 1);
+}
+
+TEST_F(Rate, OfAStreamWithoutALawSaysHowToGetOne) {
+  const Producer arm(law(), {.dimensions = 1});
+  const Ended refused = rate({"0"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("is a stream without a time law"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("splinecast stop " + law()), std::string::npos) << refused.err;
+  EXPECT_EQ(rate().code, 2);
 }
 
 TEST_F(Rate, RefusesWhatCannotBeRequested) {

@@ -144,10 +144,11 @@ TEST_F(RecordEvent, ADeadlineMissBeginsADump) {
   SteadySource source(stream.name());
   EventRecorder recorder(stream.name(), "deadline");
   settle(source);
-  // The solver is stopped before the commit of a revision, which is then too late.
+  // The solver is stopped before the commit of a revision, which is then too late. It reads the
+  // clock to look for stoppers, when the step begins, and before and after the commit.
   run_until(source, [&] {
     source.append();
-    source.step(DelayedClock(1));
+    source.step(DelayedClock(2));
     return recorder.has_dump();
   });
   recorder.expect_dump();
@@ -161,7 +162,7 @@ TEST_F(RecordEvent, ALateCommitBeginsADump) {
   // The solver is stopped between the reading of the clock and the commit.
   run_until(source, [&] {
     source.append();
-    source.step(DelayedClock(2));
+    source.step(DelayedClock(3));
     return recorder.has_dump();
   });
   recorder.expect_dump();

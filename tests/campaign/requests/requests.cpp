@@ -20,9 +20,11 @@
 #include "splinecast/errors.hpp"
 #include "splinecast/rate_commander.hpp"
 #include "splinecast/reader.hpp"
+#include "splinecast/stopper.hpp"
 #include "splinecast/streams.hpp"
 #include "tests/campaign/campaigns.hpp"
 #include "tests/campaign/requests/roles.hpp"
+#include "tests/campaign/requests/stops.hpp"
 
 namespace splinecast::campaign {
 namespace {
@@ -30,6 +32,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::size_t kCommanders = 16;
+constexpr std::size_t kStoppers = 6;
 constexpr int kOtherFiles = 5000;
 
 /// Other files in the folder of shared memory, which a solver that looks for commanders reads.
@@ -72,13 +75,21 @@ class SharedFacts {
   RequestFacts* facts_;
 };
 
-/// A law with its solver and its commanders, which this disturbs.
+/// A law with its solver and its commanders, and a stream with its producer, its solver and its
+/// stoppers, which this disturbs.
 class AttackedLaw {
  public:
   AttackedLaw(std::string law, std::uint64_t seed)
-      : law_(std::move(law)), random_(seed), commanders_(kCommanders) {
-    start_solver();
+      : law_(std::move(law)),
+        stream_(law_ + ".arm"),
+        random_(seed),
+        commanders_(kCommanders),
+        stoppers_(kStoppers) {
+    start_solver(law_, solver_);
+    start_solver(stream_, stream_solver_);
+    start_producer();
     for (std::size_t i = 0; i < kCommanders; ++i) start_commander(i);
+    for (std::size_t i = 0; i < kStoppers; ++i) start_stopper(i);
     check_.emplace([this] {
       run_bound_check(law_, *facts_);
       return nullptr;
@@ -96,12 +107,17 @@ class AttackedLaw {
   ~AttackedLaw() {
     check_.reset();
     commanders_.clear();
+    stoppers_.clear();
+    producer_.reset();
     solver_.reset();
+    stream_solver_.reset();
     busy_.clear();
-    try {
-      remove_stream(law_);
-    } catch (const StreamError&) {
-      return;  // it has not begun
+    for (const std::string& stream : {law_, stream_}) {
+      try {
+        remove_stream(stream);
+      } catch (const StreamError&) {
+        continue;  // it has not begun
+      }
     }
   }
 
@@ -109,20 +125,28 @@ class AttackedLaw {
   void disturb() {
     reap();
     const std::int64_t what = below(10);
+    const bool is_of_law = below(2) == 0;
+    std::optional<apps::Child>& solver = is_of_law ? solver_ : stream_solver_;
     if (what < 3) {
-      solver_.reset();
+      solver.reset();
       ++facts_->solvers_killed;
-      start_solver();
+      start_solver(is_of_law ? law_ : stream_, solver);
     } else if (what < 6) {
-      solver_->signal(SIGSTOP);
+      solver->signal(SIGSTOP);
       std::this_thread::sleep_for(milliseconds(1 + below(300)));
-      solver_->signal(SIGCONT);
+      solver->signal(SIGCONT);
       ++facts_->solvers_stopped;
-    } else {
+    } else if (what < 8) {
       const auto i = static_cast<std::size_t>(below(kCommanders));
       commanders_[i].reset();
       ++facts_->commanders_killed;
       start_commander(i);
+    } else {
+      const auto i = static_cast<std::size_t>(below(kStoppers));
+      stoppers_[i].reset();
+      ++facts_->stoppers_killed;
+      start_stopper(i);
+      if (below(4) == 0) start_producer();
     }
     std::this_thread::sleep_for(milliseconds(below(150)));
   }
@@ -131,8 +155,10 @@ class AttackedLaw {
   void finish() {
     reap();
     commanders_.clear();
+    stoppers_.clear();
     check_.reset();
     busy_.clear();
+    release_all();
     std::uint64_t lost = 0;
     for (std::size_t i = 0; i < kCommanders; ++i) {
       RateCommander commander(law_, name(i));
@@ -164,11 +190,52 @@ class AttackedLaw {
   }
   [[nodiscard]] static std::string name(std::size_t i) { return fmt::format("c{}", i); }
 
-  void start_solver() {
-    solver_.emplace([this] {
-      run_law(law_);
+  static void start_solver(const std::string& stream, std::optional<apps::Child>& solver) {
+    solver.emplace([stream] {
+      run_solver_of(stream);
       return nullptr;
     });
+  }
+  void start_producer() {
+    const std::uint64_t seed = random_();
+    producer_.emplace([this, seed] {
+      run_stopped_producer(stream_, seed, *facts_);
+      return nullptr;
+    });
+  }
+  void start_stopper(std::size_t i) {
+    const std::uint64_t seed = random_();
+    stoppers_[i] = std::make_unique<apps::Child>([this, i, seed] {
+      run_stopper(stream_, name(i), seed, *facts_);
+      return nullptr;
+    });
+  }
+  /// Releases the stops that are left, and checks that the stream moves again.
+  void release_all() {
+    for (std::size_t i = 0; i < kStoppers; ++i) {
+      Stopper stopper(stream_, name(i));
+      if (!stopper.wait_in_force(stopper.release(), std::chrono::minutes(1))) {
+        ++facts_->lost_stops;
+      }
+    }
+    const MonotonicClock clock;
+    const Time end = clock.now() + std::chrono::minutes(1);
+    for (bool moves = false; !moves; std::this_thread::sleep_for(milliseconds(1))) {
+      moves = is_moving();
+      if (!moves && clock.now() > end) {
+        ++facts_->lost_stops;
+        return;
+      }
+    }
+  }
+  [[nodiscard]] bool is_moving() const {
+    try {
+      Reader reader(stream_);
+      State state(reader.dimensions());
+      return has_values(reader.sample(MonotonicClock().now(), state)) && state.velocity()[0] != 0;
+    } catch (const StreamError&) {
+      return false;
+    }
   }
   void start_commander(std::size_t i) {
     const std::uint64_t seed = random_();
@@ -179,10 +246,21 @@ class AttackedLaw {
   }
   /// Counts processes that have ended by themselves, and starts them again.
   void reap() {
-    if (solver_->ended()) {
+    for (const bool is_of_law : {true, false}) {
+      std::optional<apps::Child>& solver = is_of_law ? solver_ : stream_solver_;
+      if (!solver->ended()) continue;
       ++facts_->failed;
-      solver_.reset();
-      start_solver();
+      solver.reset();
+      start_solver(is_of_law ? law_ : stream_, solver);
+    }
+    if (producer_->ended()) {
+      ++facts_->failed;
+      start_producer();
+    }
+    for (std::size_t i = 0; i < kStoppers; ++i) {
+      if (!stoppers_[i]->ended()) continue;
+      ++facts_->failed;
+      start_stopper(i);
     }
     for (std::size_t i = 0; i < kCommanders; ++i) {
       if (!commanders_[i]->ended()) continue;
@@ -192,10 +270,14 @@ class AttackedLaw {
   }
 
   std::string law_;
+  std::string stream_;
   SharedFacts facts_;
   std::mt19937_64 random_;
   std::optional<apps::Child> solver_;
+  std::optional<apps::Child> stream_solver_;
+  std::optional<apps::Child> producer_;
   std::vector<std::unique_ptr<apps::Child>> commanders_;
+  std::vector<std::unique_ptr<apps::Child>> stoppers_;
   std::optional<apps::Child> check_;
   std::vector<std::unique_ptr<apps::Child>> busy_;
 };
@@ -213,9 +295,10 @@ Result run_requests(const CampaignOptions& options) {
   attacked.finish();
   return make_result(
       options, {5, 8},
-      "requests of a rate: 16 commander processes make random requests of a time law, among them "
-      "holds and dead men, beside a busy loop on every CPU and 5,000 other files, while the solver "
-      "is killed and stopped and commanders are killed",
+      "requests: 16 commander processes make random requests of a time law, among them holds and "
+      "dead men, and 6 stopper processes hold and release a stream, which its producer sometimes "
+      "creates again, beside a busy loop on every CPU and 5,000 other files, while solvers are "
+      "killed and stopped, and commanders, stoppers and the producer are killed",
       attacked.facts().requests(), "requests", attacked.facts().found(),
       attacked.facts().measured(), to_seconds(clock.now() - begin));
 }

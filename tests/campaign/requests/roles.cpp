@@ -78,7 +78,7 @@ class RandomCommander {
     ++count;
     const auto own = entry();
     const bool is_own = own && own->number == number && !own->is_dead;
-    if (is_own && own->bound.begin() > made) facts_.note_effect(own->bound.begin() - made);
+    if (is_own && own->bound.begin() > made) facts_.effects.note(own->bound.begin() - made);
     return own;
   }
 
@@ -133,12 +133,12 @@ class RandomCommander {
 
 }  // namespace
 
-void run_law(const std::string& law) {
+void run_solver_of(const std::string& stream) {
   const MonotonicClock clock;
   std::optional<Solver> solver;
   while (!solver && !apps::stop_requested()) {
     try {
-      solver.emplace(law, SolverOptions{});
+      solver.emplace(stream, SolverOptions{});
     } catch (const StreamBusy&) {
       (void)apps::sleep_until(clock.now() + milliseconds(1));  // the killed one has just died
     }

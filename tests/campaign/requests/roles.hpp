@@ -8,8 +8,8 @@
 /// The processes of the campaign of requests. Each runs until SIGTERM or SIGKILL.
 namespace splinecast::campaign {
 
-/// Solves the law.
-void run_law(const std::string& law);
+/// Solves a law or a stream.
+void run_solver_of(const std::string& stream);
 
 /// A commander that makes random requests, and checks that each is in force and has its effect.
 void run_commander(const std::string& law, const std::string& name, std::uint64_t seed,

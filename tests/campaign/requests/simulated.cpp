@@ -18,7 +18,7 @@
 #include "ipc/law/law_board.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/memory/names.hpp"
-#include "ipc/owned/commander.hpp"
+#include "ipc/owned/request.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/reader.hpp"
@@ -61,11 +61,12 @@ class JumpyClock final : public Clock {
 /// A commander's region, in which this process writes requests at simulated times.
 struct SimulatedCommander {
   ipc::OwnerLock lock;
-  ipc::OwnedCommander own;
+  ipc::OwnedRequest own;
   ipc::RateCommand command;
 
   explicit SimulatedCommander(const std::string& name)
-      : lock(name, ipc::RegionKind::commander), own(ipc::own_commander(name, {}, {}, lock)) {
+      : lock(name, ipc::RegionKind::commander),
+        own(ipc::own_request(name, ipc::RegionKind::commander, {}, {}, lock)) {
     lock.keep_file();
   }
   /// The requested rate at the end of all ramps and dead men; below 0: none.

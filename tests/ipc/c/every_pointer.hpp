@@ -19,6 +19,8 @@ class CPointers : public ::testing::Test {
     EXPECT_EQ(splinecast_fit(&path_, nullptr, &curve_), 0) << splinecast_last_error();
     EXPECT_EQ(splinecast_rate_commander_create(law_.name().c_str(), "a", nullptr, &commander_), 0)
         << splinecast_last_error();
+    EXPECT_EQ(splinecast_stopper_create(law_.name().c_str(), "a", nullptr, &stopper_), 0)
+        << splinecast_last_error();
     add_general();
     add_producer();
     add_replacement();
@@ -32,11 +34,13 @@ class CPointers : public ::testing::Test {
     add_curve();
     add_fit();
     add_rate_commander();
+    add_stopper();
   }
   ~CPointers() override {
     EXPECT_EQ(splinecast_snapshot_destroy(snapshot_), 0);
     EXPECT_EQ(splinecast_curve_destroy(curve_), 0);
     EXPECT_EQ(splinecast_rate_commander_destroy(commander_), 0);
+    EXPECT_EQ(splinecast_stopper_destroy(stopper_), 0);
   }
 
   template <typename Call>
@@ -67,12 +71,14 @@ class CPointers : public ::testing::Test {
   void add_curve();
   void add_fit();
   void add_rate_commander();
+  void add_stopper();
 
   TestStream law_;
   CStream c_;
   splinecast_snapshot* snapshot_ = nullptr;
   splinecast_curve* curve_ = nullptr;
   splinecast_rate_commander* commander_ = nullptr;
+  splinecast_stopper* stopper_ = nullptr;
   WrongPointers wrong_;
   std::array<double, 2> values_{};
   std::array<std::int64_t, 1> times_{};
@@ -89,7 +95,8 @@ class CPointers : public ::testing::Test {
                                  .has_time = 0,
                                  .has_excess = 0,
                                  .reserved = 0,
-                                 .excess = {}};
+                                 .excess = {},
+                                 .by = {}};
   splinecast_limit_excess excess_ = {};
   splinecast_preview preview_ = SPLINECAST_PREVIEW_INIT;
   splinecast_excess place_ = {};

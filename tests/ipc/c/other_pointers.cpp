@@ -243,4 +243,34 @@ void CPointers::add_rate_commander() {
   HANDLE_ONLY(commander, splinecast_rate_commander_wait_in_force, , 1, 1);
 }
 
+void CPointers::add_stopper() {
+  const char* create = "splinecast_stopper_create";
+  const char* stream = law_.name().c_str();
+  const auto make = [](const char* named, const char* name,
+                       const splinecast_stopper_options* options) {
+    splinecast_stopper* out = nullptr;
+    return splinecast_stopper_create(named, name, options, &out);
+  };
+  wrong_.text(create, "stream", [make](auto* p) { return make(p, "b", nullptr); });
+  wrong_.text(create, "stopper", [make, stream](auto* p) { return make(stream, p, nullptr); });
+  wrong_.pointer<const splinecast_stopper_options>(
+      create, "options", [make, stream](auto* p) { return make(stream, "b", p); },
+      WrongPointers::Null::allowed);
+  wrong_.pointer<splinecast_stopper*>(create, "out", [stream](auto* p) {
+    return splinecast_stopper_create(stream, "b", nullptr, p);
+  });
+  wrong_.handle<splinecast_stopper>(
+      "splinecast_stopper_destroy", "stopper",
+      [](auto* p) { return splinecast_stopper_destroy(p); }, c_.producer,
+      WrongPointers::Null::allowed);
+  const auto stopper = [this](const char* function, const auto& call) {
+    wrong_.handle<splinecast_stopper>(function, "stopper", call, c_.producer);
+  };
+  HANDLE_ONLY(stopper, splinecast_stopper_stop);
+  HANDLE_ONLY(stopper, splinecast_stopper_release);
+  HANDLE_ONLY(stopper, splinecast_stopper_is_latched);
+  HANDLE_AND_OUTPUT(stopper, uint64_t, splinecast_stopper_number, "number", stopper_, number_);
+  HANDLE_ONLY(stopper, splinecast_stopper_wait_in_force, , 1, 1);
+}
+
 }  // namespace splinecast::testing

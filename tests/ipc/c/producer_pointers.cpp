@@ -104,6 +104,12 @@ void CPointers::add_old_end() {
   wrong_.pointer<char>(message, "text", [this](auto* p) {
     return splinecast_producer_elsewhere_message(c_.producer, &waypoint_, p, 10);
   });
+  const char* stopped = "splinecast_producer_stopped_by";
+  producer(stopped,
+           [this](auto* p) { return splinecast_producer_stopped_by(p, text_.data(), 10); });
+  wrong_.pointer<char>(stopped, "text", [this](auto* p) {
+    return splinecast_producer_stopped_by(c_.producer, p, 10);
+  });
 }
 
 void CPointers::add_producer_outputs() {

@@ -215,7 +215,7 @@ TEST(CStructs, EndWithoutPaddingThatALaterMemberCouldFill) {
 #define ENDS_WITH(type, member) \
   EXPECT_TRUE(is_end(offsetof(type, member), sizeof(type::member), sizeof(type))) << #type
   ENDS_WITH(splinecast_limits, upper);
-  ENDS_WITH(splinecast_refusal, excess);
+  ENDS_WITH(splinecast_refusal, by);
   ENDS_WITH(splinecast_refusals, consumed);
   ENDS_WITH(splinecast_producer_options, start_tolerance);
   ENDS_WITH(splinecast_preview, motion_jerk);
@@ -225,6 +225,7 @@ TEST(CStructs, EndWithoutPaddingThatALaterMemberCouldFill) {
   ENDS_WITH(splinecast_progress, reserved);
   ENDS_WITH(splinecast_law_rate, slope);
   ENDS_WITH(splinecast_rate_commander_options, reserved);
+  ENDS_WITH(splinecast_stopper_options, reserved);
   ENDS_WITH(splinecast_segment, reserved);
   ENDS_WITH(splinecast_fit_options, end);
 #undef ENDS_WITH

@@ -277,7 +277,7 @@ TEST(CValues, OfRefusalsAreInRange) {
     out.capacity = std::numeric_limits<size_t>::max();
     expect_refused("out->capacity", "", call());
   }
-  for (const int reason : {-1, 0, 16}) {
+  for (const int reason : {-1, 0, SPLINECAST_REFUSAL_STOPPED + 1}) {
     item.reason = reason;
     expect_refused("refusal->reason", "", splinecast_refusal_message(&item, nullptr, 0));
   }

@@ -8,13 +8,13 @@
 #include <string>
 #include <utility>
 
-#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/header.hpp"
+#include "ipc/layout/request_control.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
 #include "ipc/options/stream.hpp"
-#include "ipc/owned/commander.hpp"
+#include "ipc/owned/request.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/rate_commander.hpp"
@@ -33,7 +33,7 @@ class AnyCommander {
  public:
   AnyCommander(const std::string& law, const std::string& name)
       : lock_(commander_stream(law, name), RegionKind::commander),
-        own_(own_commander(commander_stream(law, name), {}, {}, lock_)) {
+        own_(own_request(commander_stream(law, name), RegionKind::commander, {}, {}, lock_)) {
     lock_.keep_file();
   }
 
@@ -68,7 +68,7 @@ class AnyCommander {
 
  private:
   OwnerLock lock_;
-  OwnedCommander own_;
+  OwnedRequest own_;
   RateCommand command_;
 };
 

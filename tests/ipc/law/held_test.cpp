@@ -7,6 +7,7 @@
 
 #include "ipc/roles/inspect.hpp"
 #include "splinecast/snapshot.hpp"
+#include "splinecast/stopper.hpp"
 #include "tests/ipc/law/held_streams.hpp"
 
 /// Replacements of streams that their time law holds, in simulated time.
@@ -54,6 +55,36 @@ TEST_F(HeldStreams, StayWhereTheyRestAfterAStop) {
     EXPECT_GT(found.equal, 20U);
     EXPECT_EQ(corners(arm(i)), i == 0 ? 1U : 0U);
   }
+}
+
+TEST_F(HeldStreams, StayWhereTheyRestAfterTheStopOfAStopper) {
+  hold(milliseconds(100));
+  pass(milliseconds(120));
+  const double held = arm().x();
+  Stopper stopper(arm().name(), "panel");
+  const auto number = stopper.stop();
+  arm().starve();
+  pass(milliseconds(10));
+  EXPECT_TRUE(stopper.wait_in_force(number, Time::zero()));
+  go(milliseconds(100));
+  for (int i = 0; i < 500; ++i) {
+    pass(milliseconds(1));
+    ASSERT_NEAR(arm().x(), held, kNanosecond);
+  }
+  const auto released = stopper.release();
+  pass(milliseconds(10));
+  EXPECT_TRUE(stopper.wait_in_force(released, Time::zero()));
+  arm().resume(stream_now() + milliseconds(300));
+  double farthest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    pass(milliseconds(1));
+    farthest = std::max(farthest, std::abs(arm().x() - held));
+  }
+  EXPECT_GT(farthest, 0.1);
+  const auto found = arm().verify();
+  EXPECT_FALSE(found.first) << found.first->what;
+  EXPECT_GT(found.equal, 20U);
+  EXPECT_EQ(corners(arm()), 1U);
 }
 
 TEST_F(HeldStreams, BeginARedirectAtRest) {

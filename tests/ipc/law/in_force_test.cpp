@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "ipc/law/law_board.hpp"
-#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/header.hpp"
+#include "ipc/layout/request_control.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
 #include "ipc/sweep/many_streams.hpp"

@@ -55,7 +55,7 @@ class ARegionWatch : public ::testing::TestWithParam<bool> {
 
   Names names() {
     watch_->look();
-    return watch_->commanders_of(law_.name());
+    return watch_->commanders().names_of(law_.name());
   }
   /// Without events a change is noticed at the next look at the folder's time.
   bool become(const Names& expected) {
@@ -68,28 +68,28 @@ TEST_P(ARegionWatch, KnowsTheNamesThatAreThereComeAndGo) {
   const RateCommander there(law_.name(), "there");
   const RateCommander elsewhere(other_.name(), "elsewhere");
   EXPECT_EQ(names(), (Names{"there"}));
-  const Word before = watch_->commanders_version();
+  const Word before = watch_->commanders().version();
   {
     const RateCommander comes(law_.name(), "comes");
-    EXPECT_EQ(watch_->commanders_version(), before);
+    EXPECT_EQ(watch_->commanders().version(), before);
     EXPECT_TRUE(become({"comes", "there"}));
-    EXPECT_NE(watch_->commanders_version(), before);
+    EXPECT_NE(watch_->commanders().version(), before);
   }
   EXPECT_EQ(names(), (Names{"comes", "there"}));  // its region stays
   unlink(region_path(commander_stream(law_.name(), "comes"), RegionKind::commander).c_str());
   EXPECT_TRUE(become({"there"}));
-  EXPECT_EQ(watch_->commanders_of(other_.name()), (Names{"elsewhere"}));
+  EXPECT_EQ(watch_->commanders().names_of(other_.name()), (Names{"elsewhere"}));
 }
 
 TEST_P(ARegionWatch, NoticesARegionThatIsReplaced) {
   const std::string path = region_path(commander_stream(law_.name(), "one"), RegionKind::commander);
   (void)RateCommander(law_.name(), "one");
   EXPECT_EQ(names(), (Names{"one"}));
-  const Word before = watch_->commanders_version();
+  const Word before = watch_->commanders().version();
   unlink(path.c_str());
   (void)RateCommander(law_.name(), "one");
   EXPECT_TRUE(
-      await([&] { return names() == Names{"one"} && watch_->commanders_version() != before; }));
+      await([&] { return names() == Names{"one"} && watch_->commanders().version() != before; }));
 }
 
 /// More files than the kernel keeps events for: the newest events are lost.
@@ -133,7 +133,7 @@ TEST(RegionWatchWithoutEvents, NoticesByTheFoldersTimeThatNoneArrive) {
   const RateCommander comes(law.name(), "comes");
   EXPECT_TRUE(await([&] {
     watch.look();
-    return watch.commanders_of(law.name()).contains("comes");
+    return watch.commanders().names_of(law.name()).contains("comes");
   }));
 }
 

@@ -22,6 +22,7 @@ std::string difference_of(const Verification& found) {
 struct Starts {
   std::size_t restarts = 0;
   std::size_t entries = 0;
+  std::size_t held = 0;  ///< times that a stopper held a stream
 };
 
 /// A live world with kills, starvation and, mostly, replacements.
@@ -46,8 +47,10 @@ void verify_parts_of(const testing::WorldOptions& options, const std::string& na
   world.run(std::chrono::milliseconds(1500));
   // A smoothed curve ends near its last waypoint: finish() expects it to end there.
   if (options.seed % 2 == 0 && options.window.interpolant.lambda == 0) world.finish();
+  if (options.seed % 2 == 1 && options.stoppers > 0) world.finish_held();
   const Verification whole = world.verify();
   EXPECT_EQ(difference_of(whole), "") << name << ", seed " << options.seed;
+  found.held += world.held;
   for (const auto& start : world.starts()) {
     const Verification part = world.verify_from(start);
     ASSERT_EQ(difference_of(part), "")
@@ -86,6 +89,20 @@ TEST(VerificationOfParts, IsBitForBitWithPeriodicAndQuaternionDimensions) {
       }
     }
   }
+  EXPECT_GT(found.restarts, 500U);
+  EXPECT_GT(found.entries, 10U);
+}
+
+TEST(VerificationOfParts, IsBitForBitWhenStoppersHoldTheStream) {
+  Starts found;
+  for (const char* name : {"c2", "pchip", "smoothing", "hermite", "quintic"}) {
+    for (std::uint64_t seed = 1; seed <= 24 && !::testing::Test::HasFailure(); ++seed) {
+      testing::WorldOptions options = world_options(name, seed);
+      options.stoppers = 3;
+      verify_parts_of(options, name, found);
+    }
+  }
+  EXPECT_GT(found.held, 100U);
   EXPECT_GT(found.restarts, 500U);
   EXPECT_GT(found.entries, 10U);
 }

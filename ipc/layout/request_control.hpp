@@ -9,8 +9,8 @@
 
 namespace splinecast::ipc {
 
-/// The control block of a commander region, one cache line: the commander's latest state. See
-/// ipc/law/commander_record.hpp for the order of loads and stores.
+/// The control block of a commander region, one cache line: the commander's latest request. See
+/// ipc/requests/record.hpp for the order of loads and stores.
 inline constexpr std::tuple kCommanderControlRows{
     FieldRow{"sequence",
              {.words = 1},
@@ -84,8 +84,60 @@ inline constexpr std::size_t kMostCommanders = 16;
 inline constexpr std::size_t kCommanderTableWords = kMostCommanders * kCommanderWords;
 static_assert(kCommanderWords == 16);
 
-/// Offsets of a commander region in bytes: it has no body.
-struct CommanderLayout {
+/// The control block of a stopper region, one cache line: the stopper's latest request. See
+/// ipc/requests/record.hpp for the order of loads and stores.
+inline constexpr std::tuple kStopperControlRows{
+    FieldRow{"sequence",
+             {.words = 1},
+             FieldWriter::owner,
+             "odd while the words after `retired` are written"},
+    FieldRow{"retired", {.words = 1}, FieldWriter::owner, "not 0: the region is no longer in use"},
+    FieldRow{
+        "number", {.words = 1}, FieldWriter::owner, "number of requests made so far; 0: none yet"},
+    FieldRow{"time", {.words = 1}, FieldWriter::owner, "ns by CLOCK_MONOTONIC: when it was made"},
+    FieldRow{"latched",
+             {.words = 1},
+             FieldWriter::owner,
+             "1: the stream is to stop, and to stay; 0: released. All else counts as 1"},
+    padding(kLineWords - 5)};
+inline constexpr auto kStopperControlFields = place(kStopperControlRows);
+inline constexpr std::size_t kStopperControlWords = size_of(kStopperControlFields).words;
+inline constexpr std::size_t kStopperSequence = word_of(kStopperControlFields, "sequence");
+inline constexpr std::size_t kStopperNumber = word_of(kStopperControlFields, "number");
+
+/// Number of words of a stopper's record, from kStopperNumber on.
+inline constexpr std::size_t kStopperRecordWords = 3;
+
+/// A stopper in the table of its stream, on the stream's board.
+inline constexpr std::size_t kStopperNameBytes = kCommanderNameBytes;
+inline constexpr std::tuple kStopperRows{
+    FieldRow{
+        "id", {.words = 1}, FieldWriter::owner, "stream id of its region; 0: the slot is free"},
+    FieldRow{"name",
+             {.words = kStopperNameBytes / sizeof(Word)},
+             FieldWriter::owner,
+             "the first 32 bytes of its name; the rest is 0"},
+    FieldRow{"number",
+             {.words = 1},
+             FieldWriter::owner,
+             "number of its request that is in force; 0: none yet"},
+    FieldRow{"state",
+             {.words = 1},
+             FieldWriter::owner,
+             "bit 0: it holds the stream\n"
+             "bit 1: its region holds no whole request any more, which counts as that"},
+    padding(1)};
+inline constexpr auto kStopperFields = place(kStopperRows);
+inline constexpr std::size_t kStopperWords = size_of(kStopperFields).words;
+
+/// Maximum number of stoppers of a stream that its board names, and the words of the table that has
+/// a row for each.
+inline constexpr std::size_t kMostStoppers = 16;
+inline constexpr std::size_t kStopperTableWords = kMostStoppers * kStopperWords;
+static_assert(kStopperWords == 8);
+
+/// Offsets of a request region, that of a commander or a stopper, in bytes: it has no body.
+struct RequestLayout {
   std::size_t control;
   std::size_t bytes = kBodyOffset;
 };

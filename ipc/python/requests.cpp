@@ -1,5 +1,3 @@
-#include "splinecast/rate_commander.hpp"
-
 #include <cstdint>
 #include <string>
 
@@ -9,6 +7,8 @@
 #include "ipc/python/values/options.hpp"
 #include "ipc/python/values/times.hpp"
 #include "ipc/python/waits.hpp"
+#include "splinecast/rate_commander.hpp"
+#include "splinecast/stopper.hpp"
 
 namespace splinecast::python {
 namespace {
@@ -55,21 +55,9 @@ class HeldCommander {
   }
 
  private:
-  /// Makes a request; with `wait`, returns when it is in force, or raises TimeoutError.
   template <typename Make>
   std::uint64_t request(py::handle wait, const Make& make) {
-    const auto timeout = optional_duration(wait, "wait");
-    const std::uint64_t number = commander_.use(make);
-    if (!timeout) return number;
-    const bool is_in_force = wait_until(
-        commander_, end_of(timeout),
-        [number](RateCommander& own, Time time) { return own.wait_in_force(number, time); });
-    if (is_in_force) return number;
-    const std::string text = "request " + std::to_string(number) + " of '" + name_ + "' to '" +
-                             law() + "' is not in force after " +
-                             std::to_string(to_seconds(*timeout)) + " s; it remains";
-    PyErr_SetString(PyExc_TimeoutError, text.c_str());
-    throw py::error_already_set();
+    return in_force(commander_, wait, name_, make);
   }
 
   std::string name_;
@@ -82,6 +70,47 @@ std::unique_ptr<HeldCommander> make(const std::string& law, const std::string& c
   Trust trusted;
   const RegionAccess allowed = access(keywords, trusted);
   return std::make_unique<HeldCommander>(law, commander, allowed, trusted);
+}
+
+/// The Python class Stopper.
+class HeldStopper {
+ public:
+  HeldStopper(const std::string& stream, std::string name, const RegionAccess& access,
+              const Trust& trusted)
+      : name_(std::move(name)),
+        stopper_("stopper", stream, make_role<Stopper>(stream, name_, access, trusted)) {}
+
+  std::uint64_t stop(py::handle wait) {
+    return in_force(stopper_, wait, name_, [](Stopper& own) { return own.stop(); });
+  }
+  std::uint64_t release(py::handle wait) {
+    return in_force(stopper_, wait, name_, [](Stopper& own) { return own.release(); });
+  }
+  bool is_latched() {
+    return stopper_.use([](Stopper& own) { return own.is_latched(); });
+  }
+
+  void close() { stopper_.close(); }
+  void exit(const py::args& /*failure*/) { close(); }
+  [[nodiscard]] bool is_closed() const { return stopper_.is_closed(); }
+  [[nodiscard]] const std::string& stream() const { return stopper_.stream(); }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] std::string text() const {
+    return "<splinecast.Stopper '" + name_ + "' of '" + stream() +
+           (is_closed() ? "', closed>" : "'>");
+  }
+
+ private:
+  std::string name_;
+  Held<Stopper> stopper_;
+};
+
+std::unique_ptr<HeldStopper> make_stopper(const std::string& stream, const std::string& stopper,
+                                          const py::kwargs& keywords) {
+  require_keywords(keywords, "Stopper", {"mode", "group", "owner"});
+  Trust trusted;
+  const RegionAccess allowed = access(keywords, trusted);
+  return std::make_unique<HeldStopper>(stream, stopper, allowed, trusted);
 }
 
 }  // namespace
@@ -106,6 +135,24 @@ void define_rate_commander(py::module_& module) {
       .def_property_readonly("law", &HeldCommander::law, doc::RateCommander_law)
       .def_property_readonly("commander", &HeldCommander::name, doc::RateCommander_commander)
       .def_property_readonly("is_closed", &HeldCommander::is_closed, doc::RateCommander_is_closed);
+}
+
+void define_stopper(py::module_& module) {
+  py::class_<HeldStopper>(module, "Stopper", doc::Stopper)
+      .def(py::init(&make_stopper), py::arg("stream"), py::arg("stopper"), doc::Stopper_init)
+      .def("stop", &HeldStopper::stop, py::kw_only(), py::arg("wait") = py::none(),
+           doc::Stopper_stop)
+      .def("release", &HeldStopper::release, py::kw_only(), py::arg("wait") = py::none(),
+           doc::Stopper_release)
+      .def("close", &HeldStopper::close, doc::Stopper_close)
+      .def(
+          "__enter__", [](py::object self) { return self; }, doc::Stopper_enter)
+      .def("__exit__", &HeldStopper::exit, doc::Stopper_exit)
+      .def("__repr__", &HeldStopper::text)
+      .def_property_readonly("is_latched", &HeldStopper::is_latched, doc::Stopper_is_latched)
+      .def_property_readonly("stream", &HeldStopper::stream, doc::Stopper_stream)
+      .def_property_readonly("stopper", &HeldStopper::name, doc::Stopper_stopper)
+      .def_property_readonly("is_closed", &HeldStopper::is_closed, doc::Stopper_is_closed);
 }
 
 }  // namespace splinecast::python
