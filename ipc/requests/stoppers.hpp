@@ -74,6 +74,9 @@ class Stoppers : public StopRequests {
   /// What a person must know of them: see RequestFaults::take().
   void take_faults(std::vector<std::string>& out) { faults_.take(out); }
 
+  /// Whether the stream has a stopper, also one that requests nothing.
+  [[nodiscard]] bool is_used() const noexcept { return !states_.empty(); }
+
   [[nodiscard]] const RequestRegions& regions() const noexcept { return regions_; }
 
  private:

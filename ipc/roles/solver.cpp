@@ -48,6 +48,9 @@ struct RingView {
   }
 };
 
+/// The same for a stream that has a stopper, whose requests do not wake the solver.
+constexpr Time kSliceOfStopped = std::chrono::milliseconds(5);
+
 /// How often a solver that does not sleep looks for new stoppers, with a system call.
 constexpr Time kLookEvery = std::chrono::milliseconds(1);
 
@@ -81,16 +84,14 @@ struct Attachment {
     refused.items.reserve(ipc::kRefusalsKept);
   }
 
-  /// `clock` is the host's.
-  StepResult step(const Clock& clock) {
-    if (!law) return solver.step(clock);
-    const ipc::LawClock stream_clock(*law, clock);
+  StepResult step(const Clock& host) {
+    if (!law) return solver.step(host);
+    const ipc::LawClock stream_clock(*law, host);
     const StepResult result = solver.step(stream_clock);
-    held_until = stream_clock.is_held() ? clock.now() + kHeldPoll : Time::min();
+    held_until = stream_clock.is_held() ? host.now() + kHeldPoll : Time::min();
     return result;
   }
 
-  /// Host time at which a step is due.
   [[nodiscard]] Time due() const noexcept { return std::max(solver.due(), held_until); }
 };
 
@@ -137,7 +138,6 @@ struct Solver::Impl {
     return true;
   }
 
-  /// Learns which commanders and stoppers have come and gone.
   void look() {
     if (watch == nullptr) {
       own_watch = std::make_unique<ipc::RegionWatch>();
@@ -292,7 +292,8 @@ void Solver::wait(Time timeout) noexcept {
   const Time due = this->due();
   const Time now = due < Time::max() ? MonotonicClock().now() : Time::zero();
   if (written == at.solver.seen() && due > now && !at.ring.ring.retired()) {
-    const Time most = std::min({timeout, kSlice, due - now});
+    const Time slice = at.stoppers && at.stoppers->is_used() ? kSliceOfStopped : kSlice;
+    const Time most = std::min({timeout, slice, due - now});
     if (!impl_->server) {
       ipc::wait_while_equal(at.ring.ring.written_word(), written, most);
       impl_->next_look = Time::min();

@@ -211,8 +211,9 @@ TEST_F(RecordLive, ARunWithLateCommitsVerifiesWhereThesePermitIt) {
     for (int i = 0; i < 400 && source.summary().late_commits < 3; ++i) {
       source.run(milliseconds(200), kLead);
       source.append();
-      // The first reading begins a step, the second one is directly before the commit.
-      source.clock.stop_after(2, milliseconds(150));
+      // The first reading looks for stoppers, the second one begins a step, the third one is
+      // directly before the commit.
+      source.clock.stop_after(3, milliseconds(150));
       source.step();
       source.begin_at(source.clock.now() + 4 * kLead);
     }
