@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/streams/holders.hpp"
 #include "splinecast/errors.hpp"
 
 namespace splinecast::apps {
@@ -51,12 +52,14 @@ void SentRows::note_replacement(Time t) {
 
 void SentRows::note_refusal(const PlayedRow& row, Time time, AppendStatus status) {
   ++refused_by_producer_;
+  std::string message = fmt::format("{}: waypoint refused: {} (time {} ns)",
+                                    recording_.where(row.number), to_string(status), time.count());
+  if (status == AppendStatus::stopped) message += ": by " + quoted(producer_.stopped_by());
   note({.by = RefusedBy::producer,
         .reason = to_string(status),
         .number = row.number,
         .loop = row.loop + 1},
-       fmt::format("{}: waypoint refused: {} (time {} ns)", recording_.where(row.number),
-                   to_string(status), time.count()));
+       message);
 }
 
 void SentRows::look() {
@@ -92,6 +95,7 @@ void SentRows::note_refusal(const ItemRefusal& refused) {
   }
   std::string message = fmt::format("{}: waypoint refused by the solver: {} (item {})", where,
                                     row.reason, refused.item);
+  if (!refused.by.empty()) message += fmt::format(": by '{}'", refused.by);
   if (refused.excess) {
     row.excess = refused.excess;
     message += ": " + in_words(*refused.excess, recording_.columns().names);

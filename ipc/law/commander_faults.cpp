@@ -10,7 +10,7 @@ std::set<std::string> faults_of(const Commanders& commanders, const CommandedRat
   const auto note = [&](bool is_so, const CommanderState& state, const std::string& text) {
     if (is_so) present.insert("commander '" + state.name + "' " + text);
   };
-  for (const RequestRegions::Unusable& unusable : commanders.unusable()) {
+  for (const RequestRegions::Unusable& unusable : commanders.regions().reported()) {
     present.insert("commander '" + unusable.name + "' is not heard: " + unusable.why);
   }
   for (const CommanderState& state : commanders.states()) {

@@ -64,11 +64,6 @@ class Commanders {
 
   [[nodiscard]] const RequestRegions& regions() const noexcept { return regions_; }
 
-  /// The commanders that the last look_around() found and could not use.
-  [[nodiscard]] const std::vector<RequestRegions::Unusable>& unusable() const noexcept {
-    return regions_.unusable();
-  }
-
   /// Whether a commander has come, or given a command since the last read(). One load per
   /// commander.
   [[nodiscard]] bool calls() const noexcept { return regions_.calls(); }

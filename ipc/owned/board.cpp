@@ -1,9 +1,16 @@
 #include "ipc/owned/board.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <string>
 #include <utility>
 
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/memory/futex.hpp"
+#include "ipc/memory/system_failure.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
 #include "ipc/owned/old_end.hpp"
@@ -13,8 +20,25 @@
 namespace splinecast::ipc {
 namespace {
 
+/// Gives a complete board the name of another one, atomically: a producer that looks for the end of
+/// the old curve finds one of the two at any time. The caller holds the stream's lock.
+void take_place_of(const std::string& stream, const Region& board) {
+  const std::string path = region_path(stream, RegionKind::spline);
+  const std::string next = path + ".new";
+  const std::string self = "/proc/self/fd/" + std::to_string(board.descriptor());
+  unlink(next.c_str());  // of a solver that was killed here
+  const bool is_linked =
+      linkat(AT_FDCWD, self.c_str(), AT_FDCWD, next.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  if (is_linked && rename(next.c_str(), path.c_str()) == 0) return;
+  const int error = errno;
+  unlink(next.c_str());
+  throw_failure("cannot link the region to " + path, error);
+}
+
+/// Makes a board; in the place of the one under the stream's name if `replaces` is set.
 OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header,
-                      const SolverOptions& options, const CurveEnd& old = {}) {
+                      const SolverOptions& options, const CurveEnd& old = {},
+                      bool replaces = false) {
   RegionHeader header = ring_header;
   header.kind = static_cast<std::uint64_t>(RegionKind::spline);
   write_options(options, header);
@@ -28,7 +52,9 @@ OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header
   enter_owner(region.bytes(), header);
   OwnedBoard board(std::move(region), header, layout, false);
   if (!old.position.empty()) board.writer.write_old_end(old.position);
-  if (!board.region.link(stream, RegionKind::spline)) {
+  if (replaces) {
+    take_place_of(stream, board.region);
+  } else if (!board.region.link(stream, RegionKind::spline)) {
     throw BadRegion(region_path(stream, RegionKind::spline) +
                     " was created by another process at the same time");
   }
@@ -60,10 +86,10 @@ std::variant<OwnedBoard, Occupied> own_board(const std::string& stream,
     if (now < end) return Occupied{end};
     const bool follows = may_follow(ring_header, header);
     const CurveEnd old = follows ? end_of_curve(header, board.reader) : CurveEnd{};
+    OwnedBoard made = make_board(stream, ring_header, options, old, true);
     board.writer.retire();
     wake_all(board.writer.revision_word());
-    unlink_region(stream, RegionKind::spline);
-    return make_board(stream, ring_header, options, old);
+    return made;
   }
   require_same_stream(ring_header, header);
   require_same_options(stream, header, options);

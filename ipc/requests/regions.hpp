@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -52,12 +53,17 @@ class RequestRegions {
   /// changed.
   bool look_around();
   static constexpr std::size_t kTries = 64;
+  static constexpr std::size_t kReported = 16;
 
   [[nodiscard]] std::span<Source> sources() noexcept { return sources_; }
   [[nodiscard]] std::span<const Source> sources() const noexcept { return sources_; }
 
   /// Those that look_around() has found and could not use.
   [[nodiscard]] const std::vector<Unusable>& unusable() const noexcept { return unusable_; }
+  /// The first of them, for messages: any user may create files with such names.
+  [[nodiscard]] std::span<const Unusable> reported() const noexcept {
+    return std::span(unusable_).first(std::min(kReported, unusable_.size()));
+  }
 
   /// Whether one has come, or made a request since its record was read. One load for each.
   [[nodiscard]] bool calls() const noexcept;

@@ -58,7 +58,7 @@ void Stoppers::note_faults() {
   }
   if (was_held_ && !is_held) present.insert("no stopper holds the stream any more");
   was_held_ = was_held_ || is_held;
-  for (const RequestRegions::Unusable& each : regions_.unusable()) {
+  for (const RequestRegions::Unusable& each : regions_.reported()) {
     if (!each.is_unread) {
       present.insert("stopper '" + each.name + "' is not heard: " + each.why);
     }

@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -94,6 +96,7 @@ void remove_regions(const std::string& stream, std::span<const RegionKind> kinds
   for (const Removable& file : files) {
     retire(file);
     unlink_region(stream, file.kind);
+    unlink((region_path(stream, file.kind) + ".new").c_str());  // of a solver that was killed
   }
   for (OwnerLock& lock : locks) lock.remove_file();
 }

@@ -23,6 +23,7 @@
 #include "ipc/roles/internals.hpp"
 #include "ipc/roles/law_server.hpp"
 #include "ipc/roles/refusals.hpp"
+#include "ipc/roles/solver_view.hpp"
 #include "ipc/roles/solver_watch.hpp"
 #include "ipc/solve/stream_solver.hpp"
 #include "splinecast/errors.hpp"
@@ -36,22 +37,10 @@ constexpr Time kSlice = std::chrono::milliseconds(50);
 /// How often a solver without a stream looks for one.
 constexpr Time kPoll = std::chrono::milliseconds(5);
 
-/// The producer's region, as the solver reads it.
-struct RingView {
-  ipc::Region region;
-  ipc::RegionHeader header;
-  ipc::WaypointRingReader ring;
-
-  RingView(ipc::Region mapped, const ipc::RegionHeader& described, const ipc::RingLayout& layout)
-      : region(std::move(mapped)), header(described), ring(region.bytes(), layout) {
-    region.close_descriptor();
-  }
-};
-
 /// The same for a stream that has a stopper, whose requests do not wake the solver.
 constexpr Time kSliceOfStopped = std::chrono::milliseconds(5);
 
-/// How often a solver that does not sleep looks for new stoppers, with a system call.
+/// How often a solver that does not sleep looks for new stoppers, by a coarse clock (4 ms).
 constexpr Time kLookEvery = std::chrono::milliseconds(1);
 
 /// How often the solver of a stream whose law holds looks at the law.
@@ -59,7 +48,7 @@ constexpr Time kHeldPoll = std::chrono::milliseconds(5);
 
 /// What a solver owns while it is attached.
 struct Attachment {
-  RingView ring;
+  ipc::RingView ring;
   ipc::OwnedBoard board;
   ipc::StreamSolver solver;
   std::unique_ptr<ipc::Stoppers> stoppers;  ///< of a live stream that is not a law
@@ -72,7 +61,7 @@ struct Attachment {
   bool is_excess_told = false;
   std::array<bool, ipc::kRefusalReasons> told{};  ///< by Refusal
 
-  Attachment(RingView producer, ipc::OwnedBoard own)
+  Attachment(ipc::RingView producer, ipc::OwnedBoard own)
       : ring(std::move(producer)),
         board(std::move(own)),
         solver(ring.ring, board.writer, board.reader, ipc::window_options(board.header),
@@ -146,6 +135,9 @@ struct Solver::Impl {
     if (own_watch) own_watch->look();
   }
 
+  /// Whether wait() looks for new stoppers instead of step(), which makes no system call then.
+  [[nodiscard]] bool looks_in_wait() const noexcept { return own_watch && !options.wake; }
+
   /// The same for the stoppers of the stream, at most every kLookEvery while the solver does not
   /// sleep. If that fails, the next call tries again: the curve continues.
   void look_for_stoppers(Time now) noexcept {
@@ -187,7 +179,7 @@ struct Solver::Impl {
   bool attach(const Clock& clock) {
     auto [region, header, layout] = ipc::open_ring(stream, false, options.trust);
     ipc::require_same_clock(header, stream);
-    RingView ring(std::move(region), header, layout);
+    ipc::RingView ring(std::move(region), header, layout);
     if (ring.ring.retired()) return false;
     std::unique_ptr<ipc::LawFollower> law;
     if (header.law_id != 0 && !find_law(header, clock, law)) {
@@ -248,8 +240,8 @@ StepResult Solver::step(const Clock& clock) {
   if (impl_->server) {
     impl_->look();
     impl_->server->look_around(clock);
-  } else if (at.stoppers) {
-    impl_->look_for_stoppers(clock.now());
+  } else if (at.stoppers && !impl_->looks_in_wait()) {
+    impl_->look_for_stoppers(clock.about_now());
   }
   const StepResult result = at.step(clock);
   if (result.damaged) {
@@ -283,6 +275,7 @@ void Solver::wait(Time timeout) noexcept {
   }
   Attachment& at = *impl_->attachment;
   (void)at.board.lock.hold();
+  if (at.stoppers && impl_->looks_in_wait()) impl_->look_for_stoppers(MonotonicClock().now());
   if (timeout <= Time::zero()) return;
   // The store and the load are seq_cst, as are the producer's store of its written position and its
   // load of sleeping: either this load sees the new position, or the producer sees that this solver

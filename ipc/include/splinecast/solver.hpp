@@ -62,8 +62,9 @@ class Solver {
   /// Consumes waypoints from the ring and publishes. Does nothing unless attached(). If the stream
   /// has been removed, withdrawn or created again, the first step that has nothing to do detaches;
   /// then call attach() again. No system calls except the clock's and, with SolverOptions::wake,
-  /// one wake per revision, of bounded cost for any number of waiting readers. Throws BadRegion if
-  /// another process has written to the board.
+  /// one wake per revision, of bounded cost for any number of waiting readers, and one in 4 ms to
+  /// learn of new stoppers. With `wake` false, wait() does that, also with the timeout 0. Throws
+  /// BadRegion if another process has written to the board.
   StepResult step(const Clock& clock);
 
   /// Sleeps until there may be work to do, but not beyond `due()`, the timeout or 50 ms (not

@@ -14,6 +14,7 @@
 #include "apps/messages/json_fields.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/roles/internals.hpp"
+#include "splinecast/stopper.hpp"
 #include "tests/apps/record/recorded.hpp"
 #include "tests/fixtures/messages/rows_of.hpp"
 
@@ -201,6 +202,33 @@ TEST_F(RecordLive, ReplacementsStarvationAndATakeoverVerifyAndReadBackWithoutWha
     rows.emplace_back(row.time, row.position[0]);
   }
   EXPECT_EQ(rows, source.rows());
+}
+
+TEST_F(RecordLive, StopsOfStoppersVerifyAndAreEvents) {
+  LiveSource source(name());
+  Stopper panel(name(), "panel");
+  Stopper second(name(), "second");
+  const auto found = record(source, [&] {
+    source.run(milliseconds(300), milliseconds(200));
+    for (Stopper* stopper : {&panel, &second}) {
+      (void)stopper->stop();
+      source.starve(milliseconds(100));
+      EXPECT_EQ(source.summary().holders, 1U);
+      source.take_over();
+      source.starve(milliseconds(300));
+      (void)stopper->release();
+      source.starve(milliseconds(20));
+      EXPECT_EQ(source.summary().holders, 0U);
+      source.begin_at(source.clock.now() + milliseconds(700));
+      source.run(milliseconds(1200), milliseconds(600));
+    }
+  });
+  EXPECT_GT(found["equal"], 50);
+  if (found["late_commits"] == 0) {
+    EXPECT_EQ(found["unverified"], 0);
+  }
+  EXPECT_EQ(events("stopped"), 2U);
+  EXPECT_EQ(events("released"), 2U);
 }
 
 TEST_F(RecordLive, ARunWithLateCommitsVerifiesWhereThesePermitIt) {

@@ -16,6 +16,7 @@
 #include "ipc/mapping/region.hpp"
 #include "ipc/options/stream.hpp"
 #include "ipc/roles/internals.hpp"
+#include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/reader.hpp"
@@ -216,6 +217,32 @@ TEST(Roles, BadOptionsAreRefusedBeforeARegionIsCreated) {
   EXPECT_THROW(Solver(stream.name(), {.capacity = 10}), BadRequest);
   EXPECT_FALSE(region_exists(stream.name(), RegionKind::waypoints));
   EXPECT_FALSE(region_exists(stream.name(), RegionKind::spline));
+}
+
+/// A producer that found none would not know where the machine is, and start anywhere.
+TEST(ABoard, IsThereAtAnyTimeWhileItsStreamIsCreatedAgain) {
+  const TestStream stream;
+  Solver solver(stream.name(), {});
+  std::atomic<int> missing = -1;
+  std::atomic<bool> is_over = false;
+  std::thread watch([&] {
+    while (!is_over) {
+      const bool exists = ipc::region_exists(stream.name(), ipc::RegionKind::spline);
+      if (exists && missing < 0) missing = 0;
+      if (!exists && missing >= 0) ++missing;
+    }
+  });
+  for (int i = 0; i < 100; ++i) {
+    Producer producer(stream.name(), {.dimensions = 1});
+    ASSERT_EQ(producer.finish(), AppendStatus::accepted);
+    EXPECT_TRUE(testing::await([&] {
+      if (solver.attach()) (void)solver.step(MonotonicClock());
+      return producer.wait_until_consumed(Time(0));
+    }));
+  }
+  is_over = true;
+  watch.join();
+  EXPECT_EQ(missing, 0);
 }
 
 }  // namespace
