@@ -1,18 +1,20 @@
 // Appends the waypoints of a live motion, a circle of 2 s at 100 Hz, each 200 ms before its time.
 //
-//   1_producer [STREAM]      default: arm
+//   1_producer [STREAM] [--law LAW]      default: arm, without a time law
 //
 // Needs a solver in a process of its own: splinecast solve STREAM. 2_controller reads the motion.
+// With a law: splinecast solve STREAM LAW, and splinecast rate LAW 1.
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <thread>
 
-#include <splinecast/clock.hpp>
 #include <splinecast/errors.hpp>
 #include <splinecast/producer.hpp>
 
@@ -32,6 +34,13 @@ std::array<double, 2> circle(Time t) {
   return {0.3 * std::cos(angle), 0.3 * std::sin(angle)};
 }
 
+/// Waits until the stream's clock shows a time. The clock of a time law may be slow, or held.
+void wait_until(Producer& producer, Time t) {
+  for (Time now = producer.now(); now < t; now = producer.now()) {
+    std::this_thread::sleep_for(std::min<Time>(t - now, 5ms));
+  }
+}
+
 /// Appends a waypoint. Waits for the solver while the ring is full.
 AppendStatus send(Producer& producer, const Waypoint& waypoint) {
   AppendStatus status = producer.append(waypoint);
@@ -41,17 +50,19 @@ AppendStatus send(Producer& producer, const Waypoint& waypoint) {
   return status;  // full: the solver has consumed nothing for 1 s
 }
 
-int produce(const char* stream) {
-  Producer producer(stream, {.dimensions = 2, .names = {"x", "y"}, .units = {"m", "m"}});
+int produce(const char* stream, const std::string& law) {
+  const StreamClock clock = law.empty() ? StreamClock::monotonic : StreamClock::law;
+  Producer producer(
+      stream,
+      {.dimensions = 2, .names = {"x", "y"}, .units = {"m", "m"}, .clock = clock, .law = law});
   if (!producer.wait_for_solver(10s)) {
     std::fprintf(stderr, "no solver: splinecast solve %s\n", stream);
     return 1;
   }
-  const Time begin = MonotonicClock().now() + kLead;  // times count from now, not from earlier
+  const Time begin = producer.now() + kLead;  // times count from now, not from earlier
   int late = 0;
   for (Time t{}; t <= kDuration; t += kInterval) {
-    const Time due = begin + t - kLead;
-    std::this_thread::sleep_until(std::chrono::steady_clock::time_point(due));  // CLOCK_MONOTONIC
+    wait_until(producer, begin + t - kLead);
     const auto position = circle(t);
     const AppendStatus status = send(producer, {.time = begin + t, .position = position});
     if (status == AppendStatus::past) {
@@ -72,8 +83,14 @@ int produce(const char* stream) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const char* stream = "arm";
+  const char* law = "";
+  for (int i = 1; i < argc; ++i) {
+    const bool is_law = std::string_view(argv[i]) == "--law" && i + 1 < argc;
+    (is_law ? law : stream) = argv[is_law ? ++i : i];
+  }
   try {
-    return produce(argc > 1 ? argv[1] : "arm");
+    return produce(stream, law);
   } catch (const StreamError& error) {  // another producer lives, shared memory is full, …
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -21,6 +21,7 @@ void StreamSweep::look_around() {
     looks_again_ = false;
   }
   note_ends_of_motion();
+  look_at_given_up();
   if (to_take_.empty()) look_elsewhere();
   if (to_take_.empty()) look_at_postponed();
   if (is_any_unheld_) hold_regions();
@@ -30,6 +31,7 @@ void StreamSweep::look_around() {
 /// exist.
 void StreamSweep::look_for_names() {
   to_take_.clear();
+  given_up_.clear();
   std::set<std::string> standing = regions_.streams();
   // The ring of a law is made by its solver, once there is a commander.
   for (const auto& [law, commanders] : regions_.commanders().names()) standing.insert(law);
@@ -46,10 +48,7 @@ void StreamSweep::look_for_names() {
   for (auto& [stream, member] : members_) {
     const bool stands = standing.contains(stream);
     if (!stands && !member.is_named) continue;
-    // Its files have been replaced: it is a new stream, and is reported as one.
-    if (member.state == State::given_up && files_of(stream) != member.files) {
-      member.state = State::unowned;
-    }
+    if (member.state == State::given_up) given_up_.push_back(stream);
     if (is_to_be_tried(member)) to_take_.push_back(stream);
   }
   std::ranges::reverse(to_take_);
@@ -75,6 +74,20 @@ StreamSweep::Files StreamSweep::files_of(const std::string& stream) {
   return {status_of(region_path(stream, RegionKind::waypoints)).st_ino,
           status_of(region_path(stream, RegionKind::spline)).st_ino,
           lock.st_uid != geteuid() ? lock.st_ino : 0};
+}
+
+/// Finds streams whose files have been replaced since they were given up: they are new streams, and
+/// are reported as such. At most kTries in one call: any user can make thousands of such files.
+void StreamSweep::look_at_given_up() {
+  for (std::size_t looks = 0; looks < kTries && !given_up_.empty(); ++looks) {
+    const std::string stream = std::move(given_up_.back());
+    given_up_.pop_back();
+    const auto found = members_.find(stream);
+    if (found == members_.end() || found->second.state != State::given_up) continue;
+    if (files_of(stream) == found->second.files) continue;
+    found->second.state = State::unowned;
+    to_take_.push_back(stream);
+  }
 }
 
 /// Retries streams that waited for the end of an earlier motion: no event reports that end.

@@ -80,9 +80,9 @@ class StreamSweep {
   static constexpr std::size_t kDescriptorsPerStream = 2;
 
  private:
-  /// Maximum number of streams tried in one sweep, and of streams of other processes checked in one
-  /// call. When one of the latter has lost its solver, the count restarts, because the same process
-  /// usually solved the others too.
+  /// Maximum number of streams tried in one sweep, and of streams that were given up, or are of
+  /// other processes, checked in one call. When one of the last has lost its solver, the count
+  /// restarts, because the same process usually solved the others too.
   static constexpr std::size_t kTries = 16;
 
   /// Interval between retries of postponed streams, one stream per retry. After a success, the next
@@ -128,6 +128,7 @@ class StreamSweep {
   [[nodiscard]] bool is_wanted(const std::string& stream) const;
   [[nodiscard]] static bool is_to_be_tried(const Member& member) noexcept;
   [[nodiscard]] static Files files_of(const std::string& stream);
+  void look_at_given_up();
   void note_ends_of_motion();
   void look_elsewhere();
   void look_at_postponed();
@@ -169,6 +170,7 @@ class StreamSweep {
   std::string last_retried_;            ///< the postponed stream that was retried last
   bool is_any_unheld_ = false;          ///< whether a board may lack its region lock
   std::vector<std::string> to_take_;    ///< streams to try next, in reverse order
+  std::vector<std::string> given_up_;   ///< streams whose files may have been replaced
   std::vector<std::string> elsewhere_;  ///< streams of other processes to check, in reverse order
   std::vector<std::string> moving_;     ///< streams that wait for the end of an earlier motion
   std::size_t most_owned_;              ///< the maximum that RLIMIT_NOFILE allows

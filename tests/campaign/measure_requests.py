@@ -15,40 +15,12 @@ import sys
 import time
 from pathlib import Path
 
-from measured import BUILD, PROGRAM, main, measurement  # sets the path of the module splinecast
+from measured import BUILD, PREFIX, PROGRAM, files, main, measurement, processes  # sets the path of the module splinecast
 
 import splinecast
 
-PREFIX = f"test.{os.getpid()}"
-
-
-@contextlib.contextmanager
-def processes(commands):
-    """Runs commands until the end of the scope."""
-    started = [subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for command in commands]
-    try:
-        yield started
-    finally:
-        for process in started:
-            process.kill()
-            process.wait()
-
-
 def busy(count):
     return processes([["sh", "-c", "while :; do :; done"]] * count)
-
-
-@contextlib.contextmanager
-def files(count):
-    """Other files in shared memory."""
-    paths = [f"/dev/shm/splinecast.{PREFIX}.other{i}.waypoints" for i in range(count)]
-    for path in paths:
-        Path(path).touch()
-    try:
-        yield
-    finally:
-        for path in paths:
-            os.unlink(path)
 
 
 @contextlib.contextmanager
@@ -354,13 +326,19 @@ def share_of_a_core(solve, seconds=10):
 
 
 @measurement
-def idle_law_with_10000_files():
+def idle_law():
     stream = f"{PREFIX}.idle"
-    with files(10000), splinecast.RateCommander(stream, "operator") as operator:
+    with splinecast.RateCommander(stream, "operator") as operator:
         operator.set_rate(1, 0.01)
         share = share_of_a_core([PROGRAM, "solve", stream, "--quiet"])
     subprocess.run([PROGRAM, "rm", stream], check=False, stdout=subprocess.DEVNULL)
     return share
+
+
+@measurement
+def idle_law_with_10000_files():
+    with files(10000):
+        return idle_law()
 
 
 @measurement

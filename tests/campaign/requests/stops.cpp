@@ -118,7 +118,7 @@ class Swing {
       if (status == AppendStatus::stopped) ++facts_.appends_stopped;
       if (status != AppendStatus::accepted) break;
     }
-    constexpr std::int64_t kRare = 1500;
+    constexpr std::int64_t kRare = 150;
     if (std::uniform_int_distribution<std::int64_t>(0, kRare)(random_) > 0) return true;
     ++facts_.streams_created;
     if (producer_.finish() != AppendStatus::accepted) return true;
