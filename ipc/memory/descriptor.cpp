@@ -32,6 +32,21 @@ Registry& registry() {
   return *the_registry;
 }
 
+/// The kernel closes the files of a killed process from the highest number to the lowest, and the
+/// end of an event queue takes it milliseconds, on a busy machine seconds. So files, which may be
+/// locked, have numbers from this one on, and event queues have lower ones.
+constexpr int kFirstOfFiles = 64;
+
+/// Opens a file, with such a number if the limit of the process allows it.
+int open_file(const char* path, int flags, mode_t mode) noexcept {
+  const int low = ::open(path, flags | O_CLOEXEC, mode);
+  if (low < 0 || low >= kFirstOfFiles) return low;
+  const int high = fcntl(low, F_DUPFD_CLOEXEC, kFirstOfFiles);
+  if (high < 0) return low;
+  ::close(low);
+  return high;
+}
+
 }  // namespace
 
 template <typename Make>
@@ -49,7 +64,7 @@ OwnedDescriptor OwnedDescriptor::own(const Make& make) {
 }
 
 OwnedDescriptor OwnedDescriptor::open(const std::string& path, int flags, mode_t mode) {
-  return own([&] { return ::open(path.c_str(), flags | O_CLOEXEC, mode); });
+  return own([&] { return open_file(path.c_str(), flags, mode); });
 }
 
 OwnedDescriptor OwnedDescriptor::event_queue() {

@@ -35,10 +35,9 @@ void take_place_of(const std::string& stream, const Region& board) {
   throw_failure("cannot link the region to " + path, error);
 }
 
-/// Makes a board; in the place of the one under the stream's name if `replaces` is set.
-OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header,
-                      const SolverOptions& options, const CurveEnd& old = {},
-                      bool replaces = false) {
+/// Makes a board that has no name yet.
+OwnedBoard make_board(const RegionHeader& ring_header, const SolverOptions& options,
+                      const CurveEnd& old = {}) {
   RegionHeader header = ring_header;
   header.kind = static_cast<std::uint64_t>(RegionKind::spline);
   write_options(options, header);
@@ -52,12 +51,30 @@ OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header
   enter_owner(region.bytes(), header);
   OwnedBoard board(std::move(region), header, layout, false);
   if (!old.position.empty()) board.writer.write_old_end(old.position);
-  if (replaces) {
-    take_place_of(stream, board.region);
-  } else if (!board.region.link(stream, RegionKind::spline)) {
+  return board;
+}
+
+OwnedBoard first_board(const std::string& stream, const RegionHeader& ring_header,
+                       const SolverOptions& options) {
+  OwnedBoard board = make_board(ring_header, options);
+  if (!board.region.link(stream, RegionKind::spline)) {
     throw BadRegion(region_path(stream, RegionKind::spline) +
                     " was created by another process at the same time");
   }
+  return board;
+}
+
+/// A board in the place of one whose motion has ended. That one is retired before it loses its
+/// name: a solver killed in between leaves a retired board, which the next one replaces. The other
+/// order would leave its readers on a board that no solver finds again.
+OwnedBoard next_board(const std::string& stream, OwnedBoard& past, const RegionHeader& ring_header,
+                      const SolverOptions& options) {
+  const bool follows = may_follow(ring_header, past.header);
+  const CurveEnd old = follows ? end_of_curve(past.header, past.reader) : CurveEnd{};
+  OwnedBoard board = make_board(ring_header, options, old);
+  past.writer.retire();
+  wake_all(past.writer.revision_word());
+  take_place_of(stream, board.region);
   return board;
 }
 
@@ -75,7 +92,7 @@ OwnedBoard::OwnedBoard(Region mapped, const RegionHeader& described, const Board
 std::variant<OwnedBoard, Occupied> own_board(const std::string& stream,
                                              const RegionHeader& ring_header,
                                              const SolverOptions& options, const Clock& clock) {
-  if (!region_exists(stream, RegionKind::spline)) return make_board(stream, ring_header, options);
+  if (!region_exists(stream, RegionKind::spline)) return first_board(stream, ring_header, options);
   auto [region, header, layout] = open_board(stream, true, options.trust);
   OwnedBoard board(std::move(region), header, layout, true);
   if (header.stream_id != ring_header.stream_id || board.reader.retired()) {
@@ -84,12 +101,7 @@ std::variant<OwnedBoard, Occupied> own_board(const std::string& stream,
     const Time now = clock.now();
     require_near_end(stream, end, now);
     if (now < end) return Occupied{end};
-    const bool follows = may_follow(ring_header, header);
-    const CurveEnd old = follows ? end_of_curve(header, board.reader) : CurveEnd{};
-    OwnedBoard made = make_board(stream, ring_header, options, old, true);
-    board.writer.retire();
-    wake_all(board.writer.revision_word());
-    return made;
+    return next_board(stream, board, ring_header, options);
   }
   require_same_stream(ring_header, header);
   require_same_options(stream, header, options);

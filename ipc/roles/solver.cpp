@@ -89,11 +89,11 @@ struct Attachment {
 struct Solver::Impl {
   std::string stream;
   SolverOptions options;
+  std::unique_ptr<ipc::RegionWatch> own_watch;  ///< ends after the lock
   ipc::OwnerLock lock;
   const ipc::RegionWatch* watch = nullptr;  ///< of this object, or of its caller
-  std::unique_ptr<ipc::RegionWatch> own_watch;
-  Time next_look = Time::min();            ///< of own_watch; min(): at once
-  std::unique_ptr<ipc::LawServer> server;  ///< if the stream is a law
+  Time next_look = Time::min();             ///< of own_watch; min(): at once
+  std::unique_ptr<ipc::LawServer> server;   ///< if the stream is a law
   std::unique_ptr<Attachment> attachment;
   Time next_attach = Time::min();
 

@@ -104,6 +104,10 @@ struct CampaignOptions {
 /// each step, and takeovers. Also checks that the law comes to rest at the least requested rate.
 [[nodiscard]] Result run_simulated_requests(const CampaignOptions& options);
 
+/// Kills a stopper of a live stream, and the solver that hears it, before each of their stores.
+/// Needs a build with hooks.
+[[nodiscard]] Result run_every_store_of_stops(const CampaignOptions& options);
+
 /// The faults of the motions, one per line: the name of their plots (may be empty), a tab and a
 /// description.
 [[nodiscard]] std::string list_motions();

@@ -127,6 +127,9 @@ void add_requests(CLI::App& program, Asked& asked) {
   verb->add_option("--seed", asked.options.seed, "Seed of the disturbances")->capture_default_str();
   verb->add_option("--runs", asked.options.runs,
                    "Simulate this number of requests in one process instead");
+  verb->add_flag(
+      "--every-store", asked.every_store,
+      "Kill a stopper and its solver before each store instead; needs a build with hooks");
 }
 
 /// The campaign of the given verb and flags.
@@ -142,6 +145,7 @@ Run run_of(const CLI::App& program, const Asked& asked) {
   if (program.got_subcommand("streams")) return run_streams;
   if (program.got_subcommand("stress")) return run_stress;
   if (program.got_subcommand("requests")) {
+    if (asked.every_store) return run_every_store_of_stops;
     return asked.options.runs > 0 ? run_simulated_requests : run_requests;
   }
   return asked.every_store ? run_every_store : run_random_kills;

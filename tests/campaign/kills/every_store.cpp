@@ -29,6 +29,8 @@ std::string_view to_string(Step step) {
       return "a finish";
     case Step::make_board:
       return "creating or taking over a board";
+    case Step::make_board_again:
+      return "replacing a board";
     case Step::publish:
       return "the publication of a waypoint";
     case Step::publish_replacement:
@@ -112,7 +114,8 @@ Result run_every_store(const CampaignOptions& options) {
   sweep("recorded", recorded_plan(campaign_stream("long"), kLongLife),
         {Step::make_ring, Step::append, Step::make_board, Step::publish, Step::sleep});
   sweep("recreated", recorded_plan(campaign_stream("short"), kShortLife),
-        {Step::make_ring, Step::finish, Step::make_board, Step::publish_finish, Step::remove});
+        {Step::make_ring, Step::finish, Step::make_board, Step::make_board_again,
+         Step::publish_finish, Step::remove});
   sweep("live", live_plan(campaign_stream("live")),
         {Step::make_ring, Step::append, Step::replace, Step::make_board, Step::publish,
          Step::publish_replacement, Step::sleep});

@@ -17,7 +17,8 @@ enum class Step : std::uint64_t {
   append,               ///< the producer appends a waypoint
   replace,              ///< the producer replaces the future
   finish,               ///< the producer finishes the stream
-  make_board,           ///< the solver creates or takes over its region
+  make_board,           ///< the solver creates or takes over its first region
+  make_board_again,     ///< the solver replaces its region by that of the stream's next life
   publish,              ///< the solver consumes a waypoint and publishes
   publish_replacement,  ///< the solver consumes a replacement and publishes
   publish_finish,       ///< the solver consumes the end and publishes

@@ -21,8 +21,8 @@ Step publishing(ipc::ItemKind kind) {
   }
 }
 
-bool attach(Solver& solver, Journal& journal) {
-  WithinStep attaching(journal, Step::make_board);
+bool attach(Solver& solver, Journal& journal, Step making) {
+  WithinStep attaching(journal, making);
   if (!solver.attach()) return false;
   attaching.survived();
   return true;
@@ -46,8 +46,10 @@ void sleep(Solver& solver, Journal& journal) {
 void run_solver(const Plan& plan, Journal& journal) {
   const MonotonicClock clock;
   Solver solver(plan.stream, plan.solver_options());
+  Step making = Step::make_board;
   while (!apps::stop_requested()) {
-    const bool is_attached = solver.attached() || attach(solver, journal);
+    const bool is_attached = solver.attached() || attach(solver, journal, making);
+    if (is_attached) making = Step::make_board_again;
     if (!is_attached || !step(solver, journal, clock)) sleep(solver, journal);
   }
 }

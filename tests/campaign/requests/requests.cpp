@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <list>
 #include <memory>
 #include <new>
 #include <optional>
@@ -128,7 +129,9 @@ class AttackedLaw {
     const bool is_of_law = below(2) == 0;
     std::optional<apps::Child>& solver = is_of_law ? solver_ : stream_solver_;
     if (what < 3) {
-      solver.reset();
+      // The next one waits for its lock only: a killed process can take long to end.
+      solver->signal(SIGKILL);
+      dying_.push_back(std::move(*solver));
       ++facts_->solvers_killed;
       start_solver(is_of_law ? law_ : stream_, solver);
     } else if (what < 6) {
@@ -246,6 +249,7 @@ class AttackedLaw {
   }
   /// Counts processes that have ended by themselves, and starts them again.
   void reap() {
+    std::erase_if(dying_, [](apps::Child& child) { return child.ended().has_value(); });
     for (const bool is_of_law : {true, false}) {
       std::optional<apps::Child>& solver = is_of_law ? solver_ : stream_solver_;
       if (!solver->ended()) continue;
@@ -278,6 +282,7 @@ class AttackedLaw {
   std::optional<apps::Child> producer_;
   std::vector<std::unique_ptr<apps::Child>> commanders_;
   std::vector<std::unique_ptr<apps::Child>> stoppers_;
+  std::list<apps::Child> dying_;  ///< solvers that were killed
   std::optional<apps::Child> check_;
   std::vector<std::unique_ptr<apps::Child>> busy_;
 };

@@ -14,6 +14,7 @@
 #include "ipc/memory/region_watch.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/rate_commander.hpp"
+#include "splinecast/solver.hpp"
 #include "tests/fixtures/processes/process.hpp"
 
 namespace splinecast::ipc {
@@ -114,15 +115,40 @@ TEST_P(ARegionWatch, KnowsTheStreamsThatHaveARing) {
   EXPECT_TRUE(await([&] { return !has(); }));
 }
 
-/// Replaces each event queue of this process by one that watches nothing.
-void make_events_stop() {
+constexpr const char* kQueue = "anon_inode:inotify";
+
+/// The open descriptors of this process whose link has this text.
+std::set<int> descriptors_of(const std::string& text) {
+  std::set<int> found;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
     std::error_code error;
-    if (std::filesystem::read_symlink(entry.path(), error) != "anon_inode:inotify") continue;
+    const std::string link = std::filesystem::read_symlink(entry.path(), error);
+    if (link.find(text) != std::string::npos) found.insert(std::stoi(entry.path().filename()));
+  }
+  return found;
+}
+
+/// Replaces each event queue of this process by one that watches nothing.
+void make_events_stop() {
+  for (const int queue : descriptors_of(kQueue)) {
     const int empty = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-    ASSERT_GE(dup2(empty, std::stoi(entry.path().filename())), 0);
+    ASSERT_GE(dup2(empty, queue), 0);
     close(empty);
   }
+}
+
+/// The kernel closes the descriptors of a killed process from the highest number down, and the end
+/// of an event queue can take it seconds on a busy machine. The next owner waits for the locks.
+TEST(RegionWatchOfASolver, IsClosedAfterItsLocksWhenItsProcessIsKilled) {
+  const TestStream stream;
+  Solver solver(stream.name(), {});
+  const Producer producer(stream.name(), {.dimensions = 1});
+  ASSERT_TRUE(solver.attach());
+  const std::set<int> queues = descriptors_of(kQueue);
+  const std::set<int> files = descriptors_of(stream.name());
+  ASSERT_FALSE(queues.empty());
+  ASSERT_GE(files.size(), 2U);  // lock file and region
+  EXPECT_GT(*files.begin(), *queues.rbegin());
 }
 
 TEST(RegionWatchWithoutEvents, NoticesByTheFoldersTimeThatNoneArrive) {

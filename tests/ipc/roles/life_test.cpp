@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "ipc/layout/check.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/mapping/region.hpp"
+#include "ipc/memory/names.hpp"
 #include "ipc/options/stream.hpp"
 #include "ipc/roles/internals.hpp"
 #include "splinecast/clock.hpp"
@@ -243,6 +245,35 @@ TEST(ABoard, IsThereAtAnyTimeWhileItsStreamIsCreatedAgain) {
   is_over = true;
   watch.join();
   EXPECT_EQ(missing, 0);
+}
+
+/// What a solver leaves that is killed while it gives its board the name of the earlier one: the
+/// readers of that one leave it, and the next solver makes the board.
+TEST(ABoard, IsLeftByItsReadersBeforeAnotherTakesItsName) {
+  const TestStream stream;
+  const MonotonicClock clock;
+  {
+    Producer earlier(stream.name(), {.dimensions = 1});
+    ASSERT_EQ(earlier.finish(), AppendStatus::accepted);
+  }
+  Solver solver(stream.name(), {});
+  ASSERT_TRUE(solver.attach());
+  (void)solver.step(clock);
+  Reader reader(stream.name());
+  const Producer later(stream.name(), {.dimensions = 1});
+
+  const std::string obstacle =
+      ipc::region_path(stream.name(), ipc::RegionKind::spline) + ".new/obstacle";
+  std::filesystem::create_directories(obstacle);
+  (void)solver.step(clock);
+  EXPECT_THROW((void)solver.attach(), BadRegion);
+  State state(1);
+  EXPECT_EQ(reader.sample(clock.now(), state), SampleStatus::retired);
+  EXPECT_THROW(Reader(stream.name()), NoSuchStream);
+
+  std::filesystem::remove_all(std::filesystem::path(obstacle).parent_path());
+  ASSERT_TRUE(solver.attach());
+  EXPECT_EQ(Reader(stream.name()).sample(clock.now(), state), SampleStatus::no_data);
 }
 
 }  // namespace
