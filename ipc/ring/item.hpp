@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/online/extrapolation.hpp"
+#include "core/motion/extrapolation.hpp"
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/status.hpp"

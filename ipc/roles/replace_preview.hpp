@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/limits/check.hpp"
-#include "core/online/entry_search.hpp"
+#include "core/motion/entry_search.hpp"
 #include "core/online/sliding_window.hpp"
 #include "ipc/board/reader.hpp"
 #include "ipc/sampling/sampler.hpp"

@@ -5,7 +5,7 @@
 
 #include "core/forms/knot_segment.hpp"
 #include "core/limits/check.hpp"
-#include "core/online/slowed_path.hpp"
+#include "core/motion/slowed_path.hpp"
 #include "splinecast/waypoint.hpp"
 
 namespace splinecast::ipc {

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/forms/slowing.hpp"
-#include "core/online/position_range.hpp"
+#include "core/motion/position_range.hpp"
+#include "core/motion/slowing.hpp"
 #include "core/polynomial/segment.hpp"
 #include "ipc/board/knot.hpp"
 #include "ipc/board/reader.hpp"

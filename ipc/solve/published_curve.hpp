@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/online/entry_search.hpp"
+#include "core/motion/entry_search.hpp"
 #include "core/online/sliding_window.hpp"
 #include "ipc/board/knot.hpp"
 #include "ipc/board/reader.hpp"

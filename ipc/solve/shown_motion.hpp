@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/online/shown_limits.hpp"
+#include "core/motion/shown_limits.hpp"
 #include "core/online/sliding_window.hpp"
 #include "ipc/board/knot.hpp"
 #include "ipc/board/reader.hpp"

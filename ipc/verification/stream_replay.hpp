@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/online/extrapolation.hpp"
-#include "core/online/slowed_path.hpp"
+#include "core/motion/extrapolation.hpp"
+#include "core/motion/slowed_path.hpp"
 #include "core/polynomial/segment.hpp"
 #include "ipc/board/segment.hpp"
 #include "ipc/memory/word.hpp"

@@ -31,7 +31,7 @@ MOST_FILES, MOST_FILES_OF_TESTS, MOST_LINES, MEDIAN_LINES, MOST_FUNCTION_LINES, 
 
 # The rooms from the lowest to the highest. A file includes only files of its own room and of lower ones.
 ROOMS = {
-    "core": "simd basics polynomial limits slopes forms laws solvers batch methods online",
+    "core": "simd basics polynomial limits slopes forms laws solvers batch methods online motion",
     "ipc": "memory layout mapping requests ring board runs solve options sampling law owned roles sweep verification/promises verification arguments c "
            "python/values python",
     "apps": "process files mcap/format mcap/output mcap/input messages output pages timing tables tables/topics "

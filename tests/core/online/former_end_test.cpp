@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "tests/core/online/entry_trial.hpp"
+#include "tests/core/motion/entry_trial.hpp"
 
 /// A restarted search reuses the end of its previous entry.
 namespace splinecast::core::entries {

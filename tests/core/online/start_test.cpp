@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "tests/core/online/entry_trial.hpp"
+#include "tests/core/motion/entry_trial.hpp"
 
 /// Which starts from rest need no entry.
 namespace splinecast::core::entries {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "core/online/extrapolation.hpp"
+#include "core/motion/extrapolation.hpp"
 #include "tests/ipc/solve/watched_stream.hpp"
 
 /// How a curve returns to its waypoints, and which waypoints it passes over.

@@ -1,4 +1,4 @@
-#include "core/online/slowed_path.hpp"
+#include "core/motion/slowed_path.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "core/online/extrapolation.hpp"
+#include "core/motion/extrapolation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "tests/core/online/entry_trial.hpp"
+#include "tests/core/motion/entry_trial.hpp"
 
 /// What an entry keeps from its beginning to its end: the limits, the observed velocity and
 /// acceleration, and the length of a quaternion.

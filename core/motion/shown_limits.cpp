@@ -1,4 +1,4 @@
-#include "core/online/shown_limits.hpp"
+#include "core/motion/shown_limits.hpp"
 
 #include <algorithm>
 #include <cmath>

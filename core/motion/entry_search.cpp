@@ -1,4 +1,4 @@
-#include "core/online/entry_search.hpp"
+#include "core/motion/entry_search.hpp"
 
 #include <algorithm>
 #include <array>

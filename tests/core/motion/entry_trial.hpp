@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/online/entry_search.hpp"
+#include "core/motion/entry_search.hpp"
 
 /// Shared by the tests of entries: states beside a target, targets, and searches from a state onto
 /// a target.

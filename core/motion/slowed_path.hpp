@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "core/forms/slowing.hpp"
 #include "core/limits/extremes.hpp"
-#include "core/online/position_range.hpp"
+#include "core/motion/position_range.hpp"
+#include "core/motion/slowing.hpp"
 #include "core/online/sliding_window.hpp"
 #include "core/polynomial/segment.hpp"
 #include "splinecast/time.hpp"

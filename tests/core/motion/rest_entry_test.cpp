@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "tests/core/online/entry_trial.hpp"
+#include "tests/core/motion/entry_trial.hpp"
 
 /// Entries that end at rest at the end of a stream.
 namespace splinecast::core::entries {

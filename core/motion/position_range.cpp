@@ -1,4 +1,4 @@
-#include "core/online/position_range.hpp"
+#include "core/motion/position_range.hpp"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 
 #include "core/limits/extremes.hpp"
 #include "core/limits/limit_of.hpp"
-#include "core/online/entry_search.hpp"
+#include "core/motion/entry_search.hpp"
 
 /// What an entry may have: velocities, accelerations and positions.
 namespace splinecast::core {

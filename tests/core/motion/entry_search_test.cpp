@@ -1,4 +1,4 @@
-#include "core/online/entry_search.hpp"
+#include "core/motion/entry_search.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/core/online/entry_trial.hpp"
+#include "tests/core/motion/entry_trial.hpp"
 
 /// Which end a search chooses for its entry, and after how many tries.
 namespace splinecast::core::entries {

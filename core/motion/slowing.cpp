@@ -1,4 +1,4 @@
-#include "core/forms/slowing.hpp"
+#include "core/motion/slowing.hpp"
 
 namespace splinecast::core {
 
