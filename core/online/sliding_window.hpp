@@ -184,6 +184,11 @@ class SlidingWindow {
   /// Number of the newest knots that another window needs to continue from this one.
   [[nodiscard]] std::size_t knots_to_restore() const noexcept { return reach() + kMaxReach + 3; }
 
+  /// The first of them, or knot 0 if there are fewer.
+  [[nodiscard]] std::size_t first_to_restore() const noexcept {
+    return knots() - std::min(knots(), knots_to_restore());
+  }
+
   /// Continues the first run of a window with the same options. `knots` are consecutive, from knot
   /// number `first` to the newest: at least knots_to_restore() of them, or all knots of the run if
   /// it has fewer. The stream must not be finished.

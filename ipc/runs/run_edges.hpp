@@ -9,9 +9,8 @@
 #include "ipc/memory/word.hpp"
 #include "splinecast/state.hpp"
 
-/// Where two pieces of a published curve meet: the state from which the next one continues, and the
-/// motion after an entry beyond the newest waypoint. Formulas only, which the solver and
-/// verification share. Nothing allocates or throws.
+/// Where two pieces of a published curve meet: the state from which the next one continues.
+/// Formulas only, which the solver and verification share. Nothing allocates or throws.
 namespace splinecast::ipc {
 
 /// The ends and the polynomial of a segment that is to be cut.
@@ -64,21 +63,5 @@ struct StopOrigin {
 [[nodiscard]] constexpr StopOrigin stop_origin(Word item) noexcept {
   return {.items = item / kMostStoppers, .slot = item % kMostStoppers};
 }
-
-/// The times of the motion after an entry that ends beyond the newest waypoint: the remainder of
-/// the straight line, unless the entry ends after the line, and the stop.
-struct BehindEntry {
-  Time end{};       ///< end of the entry
-  Time line_end{};  ///< end of the line
-  Time rest{};      ///< end of the stop
-
-  [[nodiscard]] bool has_line() const noexcept { return end < line_end; }
-  [[nodiscard]] Time stop_begin() const noexcept { return has_line() ? line_end : end; }
-  [[nodiscard]] Time stop_length() const noexcept;
-
-  /// Writes the position at the end of the line.
-  void write_line_end(std::span<const double> position, std::span<const double> velocity,
-                      std::span<double> out) const noexcept;
-};
 
 }  // namespace splinecast::ipc

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <variant>
+
+#include "core/motion/end.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/memory/word.hpp"
 #include "splinecast/time.hpp"
@@ -31,14 +35,32 @@ struct CurveOrigin {
   Word stopped_by = 0;     ///< a stopper's stop begins there: see stop_item(); 0: none
 };
 
-/// The end that is being searched for: slowing down, or an entry to the last waypoint from there.
-enum class EndSearch {
-  none,          ///< none has been tried
+/// The end that is tried: slowing down, or an entry to the last waypoint from there.
+enum class EndTrial {
   slowing,       ///< slowing down from a knot of the published curve
   from_knots,    ///< at knots of the published curve, the latest one first
   from_settled,  ///< in the published curve, as it settles
   from_rest,     ///< where the published curve rests
 };
+
+/// Whether a curve has been finished: not yet, or its end is being searched for, or it has one.
+struct Unfinished {};
+struct SearchingEnd {
+  EndTrial trial{};
+  std::size_t knot = 0;  ///< from_knots: the knot after the one that is tried
+};
+struct Ended {
+  EndKind kind{};
+  Time rest{};  ///< `entered`: when the entry comes to rest
+};
+using FinishState = std::variant<Unfinished, SearchingEnd, Ended>;
+
+/// The course that a summary has for an end.
+[[nodiscard]] constexpr Course course_of(const core::End& end) noexcept {
+  return static_cast<Course>(end.index());
+}
+/// An end of this course, without its values.
+[[nodiscard]] core::End end_of(Course course) noexcept;
 
 /// A published curve's part of a revision's summary; see the members of Summary.
 struct CurveSummary {

@@ -9,26 +9,29 @@
 namespace splinecast::ipc {
 
 void PublishedCurve::restart_search() noexcept {
-  if (course_ != Course::beyond) return search_.restart(unmet_);
-  search_.restart(unmet_, origin_state(),
-                  {behind_.end, beyond_.position(), beyond_.velocity(), beyond_.acceleration()});
+  const auto* const ahead = std::get_if<core::EnteringAhead>(&end_);
+  if (ahead == nullptr) return search_.restart(unmet_);
+  search_.restart(
+      unmet_, origin_state(),
+      {ahead->after.end, beyond_.position(), beyond_.velocity(), beyond_.acceleration()});
 }
 
-/// Reads the shown motion from the board, once, if this solver has taken over the stream.
-void PublishedCurve::find_shown() noexcept {
-  if (has_restored_shown_ || !entries_.is_live) return;
-  has_restored_shown_ = true;
-  if (course_ == Course::on_target) {  // at the start the window has all waypoints of the stream
+/// Finds the limits that a live motion shows. If this solver has taken over the stream, first reads
+/// the motion from the board.
+void PublishedCurve::look_at_shown() noexcept {
+  if (!entries_.is_live) return;
+  if (!shown_.is_restored()) restore_shown();
+  shown_.look(window_.options().stop_time);
+}
+
+void PublishedCurve::restore_shown() noexcept {
+  if (core::is<core::OnTarget>(end_)) {  // at the start the window has all waypoints of the stream
     shown_.restore(window_, *published_, summary_, Time::min(), 0);
     return;
   }
   const Time end = origin_.number > 0 ? origin_.time : Time::max();
   const bool starts_stream = !window_.is_later_run() && origin_.number == 1;
   shown_.restore(window_, *published_, summary_, end, starts_stream ? 0 : unmet_);
-}
-
-bool PublishedCurve::needs_entry() const noexcept {
-  return is_searching_ && (course_ == Course::waiting || course_ == Course::beyond);
 }
 
 /// Whether the run is the first one, and starts at rest at its first waypoint.
@@ -40,7 +43,7 @@ bool PublishedCurve::starts_from_halt() const noexcept {
 
 /// Whether such a start can still be changed.
 bool PublishedCurve::is_start_open() const noexcept {
-  const bool may_change = course_ == Course::on_target || course_ == Course::starting;
+  const bool may_change = core::is<core::OnTarget>(end_) || core::is<core::Starting>(end_);
   return may_change && starts_from_halt() && window_.knots() >= 2 &&
          window_.oldest_segment() == 0 && window_.frozen_knots() == 0;
 }
@@ -50,7 +53,7 @@ void PublishedCurve::rest_at_start() noexcept {
   const core::Knot first = window_.knot(0);
   constexpr std::array<double, kMaxDimensions> kRest{};
   const auto zeros = std::span(kRest).first(window_.dimensions());
-  course_ = Course::starting;
+  end_ = core::Starting{};
   met_ = placed_ = window_.knots();
   unmet_ = 1;
   passed_lowest_ = passed_written_ = passed_committed_ = 0;
@@ -60,7 +63,7 @@ void PublishedCurve::rest_at_start() noexcept {
 
 /// Ends that rest before it has settled: the curve follows its target from the start.
 void PublishedCurve::start_on_target() noexcept {
-  course_ = Course::on_target;
+  end_ = core::OnTarget{};
   met_ = placed_ = unmet_ = kept_ = open_ = 0;
   met_number_ = 1;
   origin_ = {};
@@ -74,24 +77,22 @@ void PublishedCurve::start_on_target() noexcept {
 void PublishedCurve::check_start(Time settled, bool is_decision) noexcept {
   core::EntryRules rules = entry_rules();
   if (is_decision) {
-    find_shown();
-    if (entries_.is_live) shown_.look(window_.options().stop_time);
+    look_at_shown();
   } else {
     rules.shown = nullptr;
   }
   const bool keeps_limits = search_.keeps_start(window_, rules);
-  if (course_ == Course::on_target) {
+  if (core::is<core::OnTarget>(end_)) {
     if (keeps_limits) return;
     rest_at_start();
   } else if (keeps_limits && settled <= window_.time(0)) {
     return start_on_target();
   }
   if (!is_decision) return;
-  course_ = Course::waiting;
+  end_ = core::Waiting{.is_searching = true};
   has_changes_ = true;
   note_met();
   search_.restart(1);
-  is_searching_ = true;
 }
 
 bool PublishedCurve::decide_start(Time t, Time settled, Time keep, int& tries) noexcept {
@@ -152,8 +153,7 @@ bool PublishedCurve::find_reach(Time until) noexcept {
 /// Prepares a search: updates the shown motion and, once per step, finds the state at which an
 /// entry begins. Returns false if the board is damaged.
 bool PublishedCurve::prepare(Time settled) noexcept {
-  find_shown();
-  if (entries_.is_live) shown_.look(window_.options().stop_time);
+  look_at_shown();
   is_prepared_ = is_prepared_ || (find_state(settled) && find_reach(Time::max()));
   return is_prepared_;
 }
@@ -170,7 +170,7 @@ core::EntryRules PublishedCurve::entry_rules() const noexcept {
 }
 
 void PublishedCurve::look_for_entry(Time settled, Time keep, bool is_last, int& tries) noexcept {
-  if (is_damaged_ || ending_ != EndKind::none) return;
+  if (is_damaged_ || ending() != EndKind::none) return;
   // Decides the start when settle + 2 waypoints are known or, on a live stream, shortly before the
   // start settles.
   if (is_start_open()) {
@@ -185,7 +185,7 @@ void PublishedCurve::look_for_entry(Time settled, Time keep, bool is_last, int& 
 
 /// Searches for the entry that the curve needs, if it needs one.
 void PublishedCurve::search_entry(Time settled, Time keep, bool is_last, int& tries) noexcept {
-  if (!needs_entry() || window_.knots() <= unmet_ || tries <= 0) return;
+  if (!core::is_searching(end_) || window_.knots() <= unmet_ || tries <= 0) return;
   if (!has_room_to_enter(keep) || !prepare(settled)) return;
   core::EntryRules rules = entry_rules();
   rules.goes_beyond = is_last && entries_.is_live;
@@ -193,7 +193,7 @@ void PublishedCurve::search_entry(Time settled, Time keep, bool is_last, int& tr
   const auto outcome = search_.search(window_, begin_state(), rules, tries);
   if (outcome == core::EntrySearch::Outcome::found) enter();
   const bool is_over = outcome == core::EntrySearch::Outcome::none && rules.goes_beyond;
-  if (is_over) is_searching_ = false;
+  if (is_over) core::set_searching(end_, false);
 }
 
 /// Makes the entry that was found part of the curve.
@@ -205,24 +205,23 @@ void PublishedCurve::enter() noexcept {
     // slots: see find_knot.
     passed_written_ = passed_lowest_;
   }
-  is_searching_ = is_prepared_ = false;
+  is_prepared_ = false;
   is_entry_new_ = true;
   const core::EntryEnd& end = search_.end();
   if (end.knot) {
-    course_ = Course::entering;
+    end_ = core::Entering{end.state.time};
     met_ = placed_ = *end.knot;
     met_number_ = origin_.number + 1;
     window_.freeze_knots(met_ + 1);
     refused_until_ = unmet_since_ = Time::max();
-    entry_end_ = end.state.time;
     std::ranges::copy(end.state.acceleration, beyond_.ref().acceleration.begin());
     kept_ = open_ = met_;
   } else {
-    course_ = Course::beyond;
+    end_ = core::EnteringAhead{
+        .after = {.end = end.state.time, .line_end = end.line_end, .rest = end.rest},
+        .known = end.known,
+        .ends_at_known = end.state.time == window_.time(end.known - 1)};
     met_ = placed_ = window_.knots();
-    behind_ = {.end = end.state.time, .line_end = end.line_end, .rest = end.rest};
-    known_ = end.known;
-    ends_at_known_ = behind_.end == window_.time(known_ - 1);
     const StateRef to = beyond_.ref();
     std::ranges::copy(end.state.position, to.position.begin());
     std::ranges::copy(end.state.velocity, to.velocity.begin());

@@ -1,7 +1,5 @@
 #include <algorithm>
 
-#include "core/limits/check.hpp"
-#include "core/limits/limit_of.hpp"
 #include "ipc/solve/published_curve.hpp"
 
 /// Compares a published curve with the limits before a waypoint is taken, and takes waypoints so
@@ -14,13 +12,15 @@ using Outcome = core::EntrySearch::Outcome;
 /// Number of knots before the newest one at which the curve tries to leave its target.
 constexpr std::size_t kEarlierKnots = 8;
 
-/// The record of an excess in a segment, without its item.
-LimitExcess record_of(const Excess& found, const core::Segment& segment) noexcept {
-  return {.kind = found.kind,
-          .dimension = found.dimension,
-          .time = std::min(segment.left + from_seconds(found.u), segment.right),
-          .value = found.value,
-          .limit = found.limit};
+/// The record of an excess, without its item.
+std::optional<LimitExcess> record_of(const std::optional<core::TimedExcess>& found) noexcept {
+  if (!found) return std::nullopt;
+  const Excess& excess = found->excess;
+  return LimitExcess{.kind = excess.kind,
+                     .dimension = excess.dimension,
+                     .time = found->time,
+                     .value = excess.value,
+                     .limit = excess.limit};
 }
 
 }  // namespace
@@ -47,95 +47,23 @@ std::size_t PublishedCurve::first_compared(Time settled) const noexcept {
   const bool is_undecided = awaits_start_check() || (window_.knots() < 2 && !entries_.keeps_limits);
   const bool may_pass_over = is_undecided || (!is_on_line() && origin_.number == 1);
   const bool excludes_start = starts_from_halt() && (!entries_.is_live || may_pass_over);
-  return std::max(
-      {first_open(settled), trial_.oldest_segment(), excludes_start ? core::kStartFades : 0});
-}
-
-/// The knots from passed_first() on: another window needs them to continue this one.
-std::span<const core::Knot> PublishedCurve::knots_to_go_on() noexcept {
-  const std::size_t first = passed_first();
-  for (std::size_t i = first; i < window_.knots(); ++i) knots_[i - first] = window_.knot(i);
-  return std::span(knots_).first(window_.knots() - first);
-}
-
-/// Makes trial_ a copy of the window.
-void PublishedCurve::begin_trial() noexcept {
-  const auto knots = knots_to_go_on();
-  if (window_.is_later_run()) {
-    trial_.restore_run(passed_first(), knots);
-  } else {
-    trial_.restore(passed_first(), knots);
-  }
-  trial_.freeze_knots(window_.frozen_knots());
+  return std::max(first_open(settled), excludes_start ? core::kStartFades : 0);
 }
 
 std::optional<LimitExcess> PublishedCurve::find_excess(const Waypoint& waypoint,
                                                        Time settled) noexcept {
-  begin_trial();
-  trial_.append(waypoint);
-  const MotionLimits& limits = window_.options().limits;
-  std::optional<LimitExcess> worst;
-  double ratio = 0;
-  for (std::size_t i = first_compared(settled); i + 1 < trial_.knots(); ++i) {
-    trial_.segment(i, segment_);
-    if (core::keeps_within(limits, &kinds_, segment_)) continue;
-    const Excess found = core::worst_excess(limits, &kinds_, segment_);
-    if (i + 1 < window_.knots() && !entries_.keeps_limits) {
-      window_.segment(i, segment_);
-      if (!core::keeps_within(limits, &kinds_, segment_)) continue;
-    }
-    if (found.ratio <= ratio) continue;
-    ratio = found.ratio;
-    worst = record_of(found, segment_);
-  }
-  if (entries_.checks_stops && ratio == 0) {
-    trial_.segment(trial_.knots() - 1, segment_);
-    const auto excess = excess_of_stop(segment_, true);
-    return excess && excess->time >= settled ? excess : std::nullopt;
-  }
-  return worst;
-}
-
-/// Where a stop exceeds a limit of acceleration or jerk, or passes a bound; nothing if it keeps
-/// them. Its velocity only falls. `of_limited`: only bounds of dimensions with a limit of
-/// acceleration count.
-std::optional<LimitExcess> PublishedCurve::excess_of_stop(const core::Segment& stop,
-                                                          bool of_limited) noexcept {
-  constexpr double kSlack = 1 + 2e-6;
-  const MotionLimits& limits = window_.limits_at_largest_rate();
-  const core::SegmentPart part = core::part_of(stop);
-  std::optional<LimitExcess> worst;
-  double ratio = kSlack;
-  const auto take = [&](const Excess& found) {
-    if (!(found.ratio > ratio)) return;
-    ratio = found.ratio;
-    worst = record_of(found, stop);
-  };
-  for (const Excess& found : core::worst_excesses(limits, &kinds_, part)) {
-    if (found.kind == LimitKind::acceleration || found.kind == LimitKind::jerk) take(found);
-  }
-  core::evaluate_derivative(stop.order, stop.coefficients, to_seconds(stop.right - stop.left), 0,
-                            values_);
-  for (std::size_t d = 0; d < part.dimensions; ++d) {
-    const double begin = stop.coefficients[d];
-    const double end = values_[d];
-    const bool rises = end > begin;
-    const auto& bounds = rises ? limits.upper : limits.lower;
-    if (of_limited && core::limit_of(limits.acceleration, d) == 0) continue;
-    if (bounds.empty() || (rises ? end <= bounds[d] : end >= bounds[d] || end == begin)) continue;
-    take({.ratio = core::ratio_of(limits, LimitKind::position, d, end, bounds[d]),
-          .kind = LimitKind::position,
-          .dimension = d,
-          .value = end,
-          .limit = bounds[d],
-          .u = to_seconds(stop.right - stop.left)});
-  }
-  return worst;
+  trial_.begin(window_);
+  trial_.window().append(waypoint);
+  const bool all_count = entries_.keeps_limits;
+  const auto worst = trial_.worst_excess(first_compared(settled), all_count ? nullptr : &window_);
+  if (worst || !entries_.checks_stops) return record_of(worst);
+  const auto excess = trial_.excess_of_newest_stop();
+  return excess && excess->time >= settled ? record_of(excess) : std::nullopt;
 }
 
 std::optional<LimitExcess> PublishedCurve::stop_excess() noexcept {
   if (!has_limits_) return std::nullopt;
-  if (ending_ == EndKind::stopped) {
+  if (ending() == EndKind::stopped) {
     stop_behind_newest(segment_);
   } else if (!read_.take_last(*published_, summary_) || read_.kind() != SegmentKind::stop) {
     return std::nullopt;
@@ -146,7 +74,7 @@ std::optional<LimitExcess> PublishedCurve::stop_excess() noexcept {
     segment_.kind = SegmentKind::stop;
     std::ranges::copy(read_.coefficients(), segment_.coefficients.begin());
   }
-  return excess_of_stop(segment_, false);
+  return record_of(trial_.excess_of_stop(segment_, false));
 }
 
 /// Whether check_start() still has to compare the first segments with the limits.
@@ -183,12 +111,12 @@ Outcome PublishedCurve::search_from_knot(const Waypoint& waypoint, int& tries) n
   uses_cut_ = true;
   is_damaged_ = is_damaged_ || !cut_.find(summary_, window_.time(leaving_knot_));
   if (is_damaged_ || !find_reach(Time::max())) return Outcome::none;
-  begin_trial();
-  trial_.freeze_knots(leaving_knot_ + 1);
-  trial_.append(waypoint);
+  trial_.begin(window_);
+  trial_.window().freeze_knots(leaving_knot_ + 1);
+  trial_.window().append(waypoint);
   core::EntryRules rules = entry_rules();
   rules.goes_beyond = true;
-  return search_.search(trial_, begin_state(), rules, tries);
+  return search_.search(trial_.window(), begin_state(), rules, tries);
 }
 
 /// Takes a waypoint with which the target exceeds a limit. The entry is searched for before
@@ -197,8 +125,7 @@ Followed PublishedCurve::leave(const Waypoint& waypoint, Word item, Time settled
                                int& tries) noexcept {
   if (has_changes_) return Followed::waits;  // the entry begins in the committed curve
   is_prepared_ = false;
-  find_shown();
-  shown_.look(window_.options().stop_time);
+  look_at_shown();
   if (awaits_start_check() && !search_.keeps_start(window_, entry_rules())) {
     append(waypoint, item);
     check_start(settled, true);
@@ -238,24 +165,24 @@ void PublishedCurve::leave_at(std::size_t knot, const Waypoint& waypoint, Word i
 Followed PublishedCurve::follow_from_rest(const Waypoint& waypoint, Word item, Time settled,
                                           Time keep, int& tries) noexcept {
   if (has_changes_) return Followed::waits;  // the entry begins in the committed curve
-  is_searching_ = is_prepared_ = false;
-  refused_until_ = end_ + entries_.min_entry;
-  const Time begin = std::max({settled, end_, waypoint.time - core::EntrySearch::kLongest});
+  core::set_searching(end_, false);
+  is_prepared_ = false;
+  refused_until_ = rest_ + entries_.min_entry;
+  const Time begin = std::max({settled, rest_, waypoint.time - core::EntrySearch::kLongest});
   if (waypoint.time <= std::max(refused_until_, begin) || !has_room_to_enter(keep)) {
     return Followed::refused;
   }
   uses_cut_ = true;
   is_damaged_ = is_damaged_ || !cut_.find(summary_, begin);
   if (is_damaged_ || !find_reach(Time::max())) return Followed::refused;
-  find_shown();
-  shown_.look(window_.options().stop_time);
-  begin_trial();
-  trial_.append(waypoint);
-  if (leaving_item_ != item) search_.restart(trial_.knots() - 1);
+  look_at_shown();
+  trial_.begin(window_);
+  trial_.window().append(waypoint);
+  if (leaving_item_ != item) search_.restart(trial_.window().knots() - 1);
   leaving_item_ = item;
   core::EntryRules rules = entry_rules();
   rules.goes_beyond = true;
-  const Outcome outcome = search_.search(trial_, begin_state(), rules, tries);
+  const Outcome outcome = search_.search(trial_.window(), begin_state(), rules, tries);
   if (outcome == Outcome::more) return Followed::waits;
   leaving_item_.reset();
   if (outcome == Outcome::none) return Followed::refused;

@@ -3,7 +3,6 @@
 
 #include "core/forms/entry.hpp"
 #include "core/forms/stop.hpp"
-#include "core/limits/check.hpp"
 #include "core/limits/extremes.hpp"
 #include "core/limits/limit_of.hpp"
 #include "ipc/solve/published_curve.hpp"
@@ -30,7 +29,7 @@ bool rests_at(const Instant& state, const core::PositionRange& reach,
 void PublishedCurve::finish_on_line(const Condition& end) noexcept {
   const std::size_t knots = window_.knots();
   window_.finish(end);
-  ending_ = EndKind::as_requested;
+  finish_ = Ended{EndKind::as_requested};
   has_changes_ = true;
   // A full stop changes the form of the last segment: its left knot is written again.
   open_ = std::min(open_, knots - std::min<std::size_t>(knots, 2));
@@ -39,8 +38,7 @@ void PublishedCurve::finish_on_line(const Condition& end) noexcept {
 /// Finds the limits of an end. A dimension without a limit of acceleration has the one that the
 /// motion has shown.
 void PublishedCurve::find_end_limits() noexcept {
-  find_shown();
-  shown_.look(window_.options().stop_time);
+  look_at_shown();
   search_.write_accelerations(window_.limits_at_largest_rate(), shown_.limits(),
                               end_limits_.acceleration);
 }
@@ -51,26 +49,17 @@ void PublishedCurve::find_end_limits() noexcept {
 bool PublishedCurve::keeps_limits_with(const Condition& end, Time settled) noexcept {
   if (!entries_.is_live) return true;
   find_end_limits();
-  begin_trial();
-  trial_.finish(end);
-  if (!is_zero(trial_.knot(trial_.knots() - 1).velocity)) return false;
-  for (std::size_t i = std::max(first_open(settled), trial_.oldest_segment());
-       i + 1 < trial_.knots(); ++i) {
-    trial_.segment(i, segment_);
-    if (core::keeps_within(end_limits_, &kinds_, segment_)) continue;
-    window_.segment(i, without_end_);
-    if (!core::exceeds_no_more(end_limits_, &kinds_, core::part_of(segment_),
-                               core::part_of(without_end_))) {
-      return false;
-    }
-  }
-  return true;
+  trial_.begin(window_);
+  core::SlidingWindow& ended = trial_.window();
+  ended.finish(end);
+  return is_zero(ended.knot(ended.knots() - 1).velocity) &&
+         trial_.exceeds_no_more(end_limits_, first_open(settled), window_);
 }
 
 /// Marks the newest waypoint as met by a curve that does not reach it on the target.
 void PublishedCurve::end_at_newest() noexcept {
   const std::size_t last = window_.knots() - 1;
-  if (course_ == Course::on_target) unmet_ = last;
+  if (core::is<core::OnTarget>(end_)) unmet_ = last;
   met_ = std::max(unmet_, last);
 }
 
@@ -81,8 +70,7 @@ void PublishedCurve::enter_end(const Instant& from) noexcept {
     set_origin(cut_.next(), from);
   }
   is_entry_new_ = true;
-  ending_ = EndKind::entered;
-  behind_ = {.end = search_.end().state.time};
+  finish_ = Ended{EndKind::entered, search_.end().state.time};
   const auto newest = window_.knot(window_.knots() - 1).position;
   std::ranges::copy(newest, beyond_.ref().position.begin());
   note_change(origin_.time);
@@ -91,12 +79,12 @@ void PublishedCurve::enter_end(const Instant& from) noexcept {
 bool PublishedCurve::finish(const Condition& end, Time settled, Time keep, int& tries) noexcept {
   const std::size_t knots = window_.knots();
   if (knots == 0) {  // the curve ends with its current stop
-    ending_ = EndKind::as_requested;
+    finish_ = Ended{EndKind::as_requested};
     return true;
   }
   if (is_start_open()) check_start(settled, true);
-  if (!is_on_line() && end_search_ == EndSearch::none && has_room_to_enter(keep) &&
-      prepare(settled)) {
+  const bool is_begun = std::holds_alternative<SearchingEnd>(finish_);
+  if (!is_on_line() && !is_begun && has_room_to_enter(keep) && prepare(settled)) {
     enter_before_end();
   }
   if (!is_on_line() || window_.frozen_knots() == knots) return search_end(settled, tries);
@@ -108,9 +96,9 @@ bool PublishedCurve::finish(const Condition& end, Time settled, Time keep, int& 
   if (has_changes_) return false;
   const bool has_settled = knots < 2 || window_.time(knots - 2) < settled;
   if (has_settled) return search_end(settled, tries);
-  if (end_search_ == EndSearch::none || end_search_ == EndSearch::slowing) {
+  if (!is_begun || is_trying(EndTrial::slowing)) {
     if (!slow_down(settled, tries)) return false;
-    if (ending_ != EndKind::none || is_damaged_) return true;
+    if (ending() != EndKind::none || is_damaged_) return true;
   }
   return search_end_from_knots(settled, tries);
 }
@@ -118,15 +106,15 @@ bool PublishedCurve::finish(const Condition& end, Time settled, Time keep, int& 
 /// Searches for the latest knot from which on the curve can slow down on its path. Returns false if
 /// the search has not ended.
 bool PublishedCurve::slow_down(Time settled, int& tries) noexcept {
-  if (end_search_ != EndSearch::slowing) {
-    end_search_ = EndSearch::slowing;
+  if (!is_trying(EndTrial::slowing)) {
+    finish_ = SearchingEnd{EndTrial::slowing};
     slowed_.restart(summary_, end_limits_);
   }
   switch (slowed_.search(number_of(met_) + 1, settled, tries)) {
     case SlowedEnd::Outcome::more:
       return false;
     case SlowedEnd::Outcome::found:
-      ending_ = EndKind::slowed;
+      finish_ = Ended{EndKind::slowed};
       note_change(slowed_.begin());
       return true;
     case SlowedEnd::Outcome::damaged:
@@ -143,16 +131,14 @@ bool PublishedCurve::slow_down(Time settled, int& tries) noexcept {
 /// the curve ends in the shortest stop after its last waypoint. Returns false if the search has not
 /// ended.
 bool PublishedCurve::search_end_from_knots(Time settled, int& tries) noexcept {
-  if (end_search_ != EndSearch::from_knots) {
-    end_search_ = EndSearch::from_knots;
-    end_knot_ = window_.knots() - 1;
+  if (!is_trying(EndTrial::from_knots)) {
+    finish_ = SearchingEnd{EndTrial::from_knots, window_.knots() - 1};
     search_.restart(0);
-    find_shown();
-    shown_.look(window_.options().stop_time);
+    look_at_shown();
   }
   const Instant rest = rest_at_newest();
-  for (; end_knot_ > met_; --end_knot_) {
-    const Time t = published_->time_hint(number_of(end_knot_ - 1));
+  for (std::size_t& knot = std::get<SearchingEnd>(finish_).knot; knot > met_; --knot) {
+    const Time t = published_->time_hint(number_of(knot - 1));
     if (t < settled) break;
     uses_cut_ = true;
     is_damaged_ = is_damaged_ || !cut_.find(summary_, t);
@@ -163,15 +149,15 @@ bool PublishedCurve::search_end_from_knots(Time settled, int& tries) noexcept {
     if (outcome == core::EntrySearch::Outcome::more) return false;
     if (outcome == core::EntrySearch::Outcome::found) {
       passed_before_ += passed_over();
-      course_ = Course::on_target;
+      end_ = core::OnTarget{};
+      unmet_ = knot;
       enter_end(from);
-      unmet_ = end_knot_;
       met_ = window_.knots() - 1;
       return true;
     }
     search_.restart(0);
   }
-  ending_ = EndKind::stopped;
+  finish_ = Ended{EndKind::stopped};
   has_changes_ = true;
   open_ = std::min(open_, window_.knots() - 1);
   return true;
@@ -203,9 +189,9 @@ Instant PublishedCurve::rest_at_newest() noexcept {
 /// Finds the state in which an entry to the last waypoint may begin. Returns false if the board is
 /// damaged.
 bool PublishedCurve::prepare_end(Time settled) noexcept {
-  if (end_search_ != EndSearch::from_rest) return prepare(settled);
+  if (!is_trying(EndTrial::from_rest)) return prepare(settled);
   uses_cut_ = true;
-  is_damaged_ = is_damaged_ || !cut_.find(summary_, std::max(settled, end_));
+  is_damaged_ = is_damaged_ || !cut_.find(summary_, std::max(settled, rest_));
   return !is_damaged_ && find_reach(Time::max());
 }
 
@@ -224,7 +210,7 @@ Time PublishedCurve::longest_end(const Instant& rest, Time from) const noexcept 
                                                         core::limit_of(limits.acceleration, d),
                                                         core::limit_of(limits.jerk, d)));
   }
-  return std::max(end_ - from, Time::zero()) +
+  return std::max(rest_ - from, Time::zero()) +
          from_seconds(std::min(seconds, kLongestWithinLimits));
 }
 
@@ -236,14 +222,14 @@ bool PublishedCurve::search_end(Time settled, int& tries) noexcept {
     const Instant from = begin_state();
     if (rests_at(from, reach_, rest.position)) {
       end_at_newest();
-      ending_ = EndKind::as_requested;
+      finish_ = Ended{EndKind::as_requested};
       return true;
     }
-    if (end_search_ != EndSearch::from_settled && end_search_ != EndSearch::from_rest) {
+    const bool is_from_rest = is_trying(EndTrial::from_rest);
+    if (!is_from_rest && !is_trying(EndTrial::from_settled)) {
       search_.restart(0);
-      end_search_ = EndSearch::from_settled;
+      finish_ = SearchingEnd{EndTrial::from_settled};
     }
-    const bool is_from_rest = end_search_ == EndSearch::from_rest;
     const auto outcome = search_.search_rest(
         rest, from, entry_rules(),
         is_from_rest ? core::EntrySearch::kLongest : longest_end(rest, from.time), tries);
@@ -253,12 +239,12 @@ bool PublishedCurve::search_end(Time settled, int& tries) noexcept {
       end_at_newest();
       return true;
     }
-    if (is_from_rest || from.time >= end_) {
-      ending_ = EndKind::in_stop;
+    if (is_from_rest || from.time >= rest_) {
+      finish_ = Ended{EndKind::in_stop};
       return true;
     }
     // The stop of a state that is not committed yet is not on the board.
-    end_search_ = EndSearch::from_rest;
+    finish_ = SearchingEnd{EndTrial::from_rest};
     search_.restart(0);
     if (origin_.is_new) return false;
     if (!prepare_end(settled)) return true;

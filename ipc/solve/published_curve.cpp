@@ -39,14 +39,12 @@ PublishedCurve::PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& pu
       end_limits_(options.limits),
       reach_(published.dimensions()),
       shown_(published),
-      committed_shown_(published),
       read_(published.dimensions(), published.smooths()),
       knot_(published.dimensions(), published.smooths()),
       knots_(window_.knots_to_restore()),
       knot_values_(kKnotValues * published.dimensions() * window_.knots_to_restore()),
       values_(published.dimensions()),
       segment_(published.dimensions()),
-      without_end_(published.dimensions()),
       origin_state_(published.dimensions()),
       beyond_(published.dimensions()) {
   end_limits_.acceleration.resize(published.dimensions());
@@ -92,37 +90,39 @@ void PublishedCurve::set_origin(Word number, const Instant& state) noexcept {
 void PublishedCurve::freeze(Time t) noexcept {
   is_prepared_ = false;
   const std::size_t knots = window_.knots();
-  if (course_ == Course::entering && t >= entry_end_) {
+  const auto* const entering = std::get_if<core::Entering>(&end_);
+  if (entering != nullptr && t >= entering->end) {
     passed_before_ += passed_over();
-    course_ = Course::on_target;
+    end_ = core::OnTarget{};
     unmet_ = met_;
     origin_ = {};
   }
   // This entry ends at the newest waypoint that it knew, which the curve has now met.
-  if (course_ == Course::beyond && ends_at_known_ && t >= behind_.end) {
-    passed_before_ += known_ - 1 - unmet_;
-    unmet_ = known_;
-    ends_at_known_ = false;
+  auto* const ahead = std::get_if<core::EnteringAhead>(&end_);
+  if (ahead != nullptr && ahead->ends_at_known && t >= ahead->after.end) {
+    passed_before_ += ahead->known - 1 - unmet_;
+    unmet_ = ahead->known;
+    ahead->ends_at_known = false;
     note_met();
   }
-  if (course_ == Course::on_target && knots > 0) {
+  if (core::is<core::OnTarget>(end_) && knots > 0) {
     window_.freeze(t);
     // The newest knot is frozen: readers follow the stop after it.
     if (t >= window_.time(knots - 1)) wait_for_entry(window_.knots());
-  } else if (course_ == Course::waiting && !is_searching_ && !has_given_up() && knots > unmet_ &&
-             t < newest_time()) {
+  } else if (core::is<core::Waiting>(end_) && !core::is_searching(end_) && !has_given_up() &&
+             knots > unmet_ && t < newest_time()) {
     // The entry would now begin later in the stop, in another state: candidates that failed before
     // may now keep the limits.
     search_.restart(unmet_);
-    is_searching_ = true;
+    core::set_searching(end_, true);
   }
   keep_settled();
 }
 
-/// Sets the course to `waiting`: the end of the curve is final, so that only an entry can lead to
+/// Lets the curve wait: its end is final, so that only an entry can lead to
 /// the next waypoint. The curve meets the leading `met` knots of the run.
 void PublishedCurve::wait_for_entry(std::size_t met) noexcept {
-  course_ = Course::waiting;
+  end_ = core::Waiting{};
   met_ = placed_ = window_.knots();
   unmet_ = met;
   // The next waypoint changes the rows of the last met knots, and many entries in sequence may push
@@ -202,7 +202,9 @@ void PublishedCurve::begin_run(Time t, const RunBegin& how) noexcept {
   if (how.is_from_rest) cut_.come_to_rest();
   uses_cut_ = true;
   if (!find_reach(Time::max())) return;
-  ends_at_known_ = ends_at_known_ && t >= behind_.end;
+  if (auto* const ahead = std::get_if<core::EnteringAhead>(&end_)) {
+    ahead->ends_at_known = ahead->ends_at_known && t >= ahead->after.end;
+  }
   cut_.write();
   run_ = cut_.next();
   run_item_ = 0;
@@ -214,9 +216,8 @@ void PublishedCurve::begin_run(Time t, const RunBegin& how) noexcept {
   origin_.is_corner = how.is_from_rest;
   origin_.stopped_by = how.stopped_by;
   blend_until_ = t + how.blend;
-  is_searching_ = is_entry_new_ = is_prepared_ = false;
-  committed_shown_ = shown_;
-  has_forgotten_ = true;
+  is_entry_new_ = is_prepared_ = false;
+  shown_.begin_cut();
   if (how.has_waypoints) {
     shown_.replace_from_next();
   } else {
@@ -232,9 +233,9 @@ void PublishedCurve::append(const Waypoint& waypoint, Word item) noexcept {
   window_.append(waypoint);
   if (entries_.is_live) shown_.note(waypoint.time, waypoint.position);
   has_changes_ = true;
-  if (course_ == Course::waiting || course_ == Course::beyond) {
-    if (!is_searching_) restart_search();
-    is_searching_ = true;
+  if (core::may_enter(end_)) {
+    if (!core::is_searching(end_)) restart_search();
+    core::set_searching(end_, true);
     if (unmet_since_ == Time::max()) note_met();
   }
   // Settled knots leave the window and are written once, with their final values.
@@ -255,17 +256,19 @@ Word PublishedCurve::waypoints_after(Time t) const noexcept {
 
 /// Waypoints that the open entry passes over.
 std::size_t PublishedCurve::passed_over() const noexcept {
-  if (course_ == Course::starting) return 0;  // not decided yet
-  const bool ends_at_newest = ending_ == EndKind::as_requested || ending_ == EndKind::entered;
+  if (core::is<core::Starting>(end_)) return 0;  // not decided yet
+  const bool ends_at_newest = ending() == EndKind::as_requested || ending() == EndKind::entered;
   const bool has_met = is_on_line() || ends_at_newest;
   const std::size_t end = has_met ? met_ : window_.knots();
   const std::size_t over = end - std::min(end, unmet_);
-  const bool meets_end = !has_met && course_ == Course::beyond && ends_at_known_;
+  const auto* const ahead = std::get_if<core::EnteringAhead>(&end_);
+  const bool meets_end = !has_met && ahead != nullptr && ahead->ends_at_known;
   return over - (meets_end ? 1 : 0);
 }
 
 void PublishedCurve::committed(const Summary& summary) noexcept {
-  has_changes_ = has_forgotten_ = false;
+  has_changes_ = false;
+  shown_.committed();
   is_entry_new_ = is_prepared_ = false;  // the reach of an entry is that of the committed curve
   origin_.is_new = false;
   summary_ = summary;

@@ -4,7 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/motion/end.hpp"
 #include "core/motion/entry_search.hpp"
+#include "core/motion/trial.hpp"
 #include "core/online/sliding_window.hpp"
 #include "ipc/board/knot.hpp"
 #include "ipc/board/reader.hpp"
@@ -56,7 +58,7 @@ class PublishedCurve {
 
   [[nodiscard]] const core::SlidingWindow& window() const noexcept { return window_; }
   [[nodiscard]] const DimensionKinds& kinds() const noexcept { return kinds_; }
-  [[nodiscard]] Course course() const noexcept { return course_; }
+  [[nodiscard]] Course course() const noexcept { return course_of(end_); }
 
   /// The position that the next waypoint is unwrapped to: that of the newest waypoint of the run,
   /// or of the state that the run was entered from; empty if there is neither.
@@ -75,12 +77,12 @@ class PublishedCurve {
 
   /// Whether the run is a stop from a state, and no waypoint has come since.
   [[nodiscard]] bool is_stop() const noexcept {
-    return course_ == Course::waiting && window_.knots() == 0;
+    return core::is<core::Waiting>(end_) && window_.knots() == 0;
   }
 
   /// Whether the run begins after t and has met no waypoint.
   [[nodiscard]] bool begins_after(Time t) const noexcept {
-    return course_ == Course::waiting && unmet_ == 0 && origin_.number > 0 && t < origin_.time;
+    return core::is<core::Waiting>(end_) && unmet_ == 0 && origin_.number > 0 && t < origin_.time;
   }
 
   /// Number of waypoints of the run that the committed curve is on after t.
@@ -89,7 +91,7 @@ class PublishedCurve {
   /// Whether the run is a stop that moves after t, and begins at `latest` or earlier.
   [[nodiscard]] bool is_stopping(Time t, Time latest) const noexcept {
     return is_stop() && origin_.number > 1 && !origin_.is_corner && origin_.time <= latest &&
-           t < end_;
+           t < rest_;
   }
 
   /// A live stream's start is decided at the latest when settled_until reaches this time: `notice`
@@ -99,7 +101,7 @@ class PublishedCurve {
   }
 
   /// The time at which the curve comes to rest.
-  [[nodiscard]] Time end_of_motion() const noexcept { return end_; }
+  [[nodiscard]] Time end_of_motion() const noexcept { return rest_; }
 
   /// Freezes the committed curve up to the right end of the segment that contains t. If this
   /// freezes the newest knot, the next waypoint needs an entry.
@@ -153,21 +155,20 @@ class PublishedCurve {
   /// `is_last`: no further waypoint can be taken in this step, so the search uses the known ones.
   /// Does not overwrite segments that end after `keep`.
   void plan(Time settled, Time keep, bool is_last, int& tries) noexcept {
-    if (is_searching_ || window_.options().held_before_start) {
+    if (core::is_searching(end_) || window_.options().held_before_start) {
       look_for_entry(settled, keep, is_last, tries);
     }
   }
 
   /// Whether a search for an entry is unfinished: a step has work to do without a new waypoint.
   [[nodiscard]] bool is_planning() const noexcept {
-    return is_searching_ && ending_ == EndKind::none;
+    return core::is_searching(end_) && ending() == EndKind::none;
   }
 
   /// Whether the curve waits for newer waypoints to enter, although the next item is a replacement
   /// after all waypoints of the run, from time t on. Not on a live stream: it does not wait.
   [[nodiscard]] bool may_enter_before(Time t) const noexcept {
-    return needs_entry() && is_planning() && !entries_.is_live && window_.knots() > unmet_ &&
-           t >= newest_time();
+    return is_planning() && !entries_.is_live && window_.knots() > unmet_ && t >= newest_time();
   }
 
   /// Decides a start with limits that a cut at t keeps. Returns whether the curve has changes.
@@ -195,12 +196,16 @@ class PublishedCurve {
   [[nodiscard]] bool finish(const Condition& end, Time settled, Time keep, int& tries) noexcept;
 
   /// How the curve ends; EndKind::none before finish() has returned true.
-  [[nodiscard]] EndKind ending() const noexcept { return ending_; }
+  [[nodiscard]] EndKind ending() const noexcept {
+    const auto* const ended = std::get_if<Ended>(&finish_);
+    return ended != nullptr ? ended->kind : EndKind::none;
+  }
 
   /// How long after its newest waypoint's time a curve that does not end as requested rests at it.
   [[nodiscard]] Time end_lateness() const noexcept {
-    if (ending_ == EndKind::slowed) return slowed_.end() - newest_time();
-    return ending_ == EndKind::entered ? behind_.end - newest_time() : Time::zero();
+    if (ending() == EndKind::slowed) return slowed_.end() - newest_time();
+    return ending() == EndKind::entered ? std::get<Ended>(finish_).rest - newest_time()
+                                        : Time::zero();
   }
 
   /// Writes the changes to the board. Returns the earliest time at which the curve changes; max()
@@ -219,9 +224,7 @@ class PublishedCurve {
     return met_number_ + knot - met_;
   }
   /// Whether the published curve ends with a piece of the target.
-  [[nodiscard]] bool is_on_line() const noexcept {
-    return course_ == Course::on_target || course_ == Course::entering;
-  }
+  [[nodiscard]] bool is_on_line() const noexcept { return core::is_on_target(end_); }
 
   // Room, origins and changes: published_curve.cpp.
   [[nodiscard]] bool has_room_behind(Word number, std::size_t knots, Time keep) const noexcept;
@@ -240,8 +243,8 @@ class PublishedCurve {
   void start_on_target() noexcept;
   void check_start(Time settled, bool is_decision) noexcept;
   void restart_search() noexcept;
-  void find_shown() noexcept;
-  [[nodiscard]] bool needs_entry() const noexcept;
+  void look_at_shown() noexcept;
+  void restore_shown() noexcept;
   [[nodiscard]] bool find_state(Time settled) noexcept;
   [[nodiscard]] bool find_reach(Time until) noexcept;
   [[nodiscard]] bool prepare(Time settled) noexcept;
@@ -258,12 +261,8 @@ class PublishedCurve {
   // Limits: excess.cpp.
   [[nodiscard]] std::size_t first_open(Time settled) const noexcept;
   [[nodiscard]] std::size_t first_compared(Time settled) const noexcept;
-  [[nodiscard]] std::span<const core::Knot> knots_to_go_on() noexcept;
-  void begin_trial() noexcept;
   [[nodiscard]] std::optional<LimitExcess> find_excess(const Waypoint& waypoint,
                                                        Time settled) noexcept;
-  [[nodiscard]] std::optional<LimitExcess> excess_of_stop(const core::Segment& stop,
-                                                          bool of_limited) noexcept;
   void stop_behind_newest(core::Segment& out) noexcept;
   [[nodiscard]] bool has_given_up() const noexcept { return refused_until_ < Time::max(); }
   [[nodiscard]] bool awaits_start_check() const noexcept;
@@ -278,7 +277,7 @@ class PublishedCurve {
 
   // Knots written to the board: write.cpp.
   void write_origin() noexcept;
-  void write_beyond() noexcept;
+  void write_beyond(const core::EnteringAhead& ahead) noexcept;
   void write_ending() noexcept;
   void write_passed(std::size_t first, std::size_t end) noexcept;
   void write_unmet(std::size_t end) noexcept;
@@ -291,6 +290,11 @@ class PublishedCurve {
   void drop_oldest() noexcept;
 
   // The end: finish.cpp.
+  /// Whether this end is being tried.
+  [[nodiscard]] bool is_trying(EndTrial trial) const noexcept {
+    const auto* const search = std::get_if<SearchingEnd>(&finish_);
+    return search != nullptr && search->trial == trial;
+  }
   void finish_on_line(const Condition& end) noexcept;
   void find_end_limits() noexcept;
   [[nodiscard]] bool keeps_limits_with(const Condition& end, Time settled) noexcept;
@@ -312,11 +316,6 @@ class PublishedCurve {
   [[nodiscard]] bool find_knot(std::size_t i, Word& line) noexcept;
   [[nodiscard]] core::Knot restore_knot(std::span<double> values) noexcept;
 
-  /// The oldest knot of which the window still has all values.
-  [[nodiscard]] std::size_t passed_first() const noexcept {
-    return window_.knots() - std::min(window_.knots(), window_.knots_to_restore());
-  }
-
   /// Number of knots before the passed-over ones that a window needs to continue: as many as a row
   /// and a slope depend on.
   static constexpr std::size_t kMetKept = core::kMaxReach + 3;
@@ -329,7 +328,7 @@ class PublishedCurve {
   const KnotBoardReader* published_;
   DimensionKinds kinds_;
   core::SlidingWindow window_;
-  core::SlidingWindow trial_;  ///< scratch: a copy of the window, then changed
+  core::Trial trial_;
   EntryOptions entries_;
   std::size_t look_ahead_;  ///< how many rows before the newest knot an append may change
   bool has_plain_knots_;    ///< an append changes only the velocities of older knots
@@ -341,27 +340,23 @@ class PublishedCurve {
   MotionLimits end_limits_;    ///< of an end: the given ones, else the acceleration that was shown
   core::PositionRange reach_;  ///< of the published curve from where an entry would begin
   ShownMotion shown_;
-  ShownMotion committed_shown_;      ///< copy of shown_ from before a cut that is not committed yet
-  bool has_forgotten_ = false;       ///< whether there is such a cut
-  bool has_restored_shown_ = false;  ///< shown_ is up to date with the board
-  BoardSegment read_;                ///< scratch
-  KnotCopy knot_;                    ///< scratch
+  BoardSegment read_;  ///< scratch
+  KnotCopy knot_;      ///< scratch
   std::vector<core::Knot> knots_;
   std::vector<double> knot_values_;
   std::vector<double> values_;  ///< scratch
   core::Segment segment_;       ///< scratch
-  core::Segment without_end_;   ///< scratch
   Word run_ = 1;
   Word run_item_ = 0;  ///< item of the run's first waypoint, plus 1
   Word first_ = 0;
   Word newest_ = 0;
-  Time end_{};
+  Time rest_{};
   Time stop_{};  ///< length of the stop, if the newest segment is one
   Time changed_from_ = Time::max();
   std::size_t kept_ = 0;  ///< number of leading knots of the run unchanged since the commit
   std::size_t open_ = 0;  ///< number of leading knots of the run that are written with final values
 
-  Course course_ = Course::on_target;
+  core::End end_;
   std::size_t met_ = 0;            ///< first knot of the run in the last piece of the target
   Word met_number_ = 1;            ///< its number
   std::size_t unmet_ = 0;          ///< first knot of the run that the open entry passes over
@@ -376,23 +371,16 @@ class PublishedCurve {
   CurveOrigin origin_;
   State origin_state_;
   Time blend_until_ = Time::min();  ///< no entry of the run ends before this time
-  Time entry_end_{};                ///< end of an entry that ends at a waypoint
   State beyond_;  ///< state at the end of the entry; only the acceleration if it ends at a waypoint
-  BehindEntry behind_;
-  Word known_ = 0;              ///< number of waypoints that an entry beyond the newest one used
-  bool ends_at_known_ = false;  ///< that entry ends at waypoint known_ - 1, not met yet
-  bool is_entry_new_ = false;   ///< the entry has not been written
-  bool is_prepared_ = false;    ///< this step has found the state from which an entry may begin
-  bool uses_cut_ = false;       ///< that state is cut_.state(), else the origin
-  bool is_searching_ = false;
-  Time unmet_since_ = Time::max();      ///< see Summary
+  bool is_entry_new_ = false;       ///< the entry has not been written
+  bool is_prepared_ = false;        ///< this step has found the state from which an entry may begin
+  bool uses_cut_ = false;           ///< that state is cut_.state(), else the origin
+  Time unmet_since_ = Time::max();  ///< see Summary
   Time refused_until_ = Time::max();    ///< see Summary
   std::optional<Word> leaving_item_{};  ///< for this waypoint the curve searches where to leave
   std::size_t leaving_knot_ = 0;        ///< from this knot of the target
-  EndSearch end_search_ = EndSearch::none;
-  std::size_t end_knot_ = 0;         ///< from_knots: the knot after the one that is tried
-  EndKind ending_ = EndKind::none;   ///< `entered`: the curve ends by an entry to `beyond_`
-  std::size_t committed_knots_ = 0;  ///< number of knots of the run at the last commit
+  FinishState finish_;                  ///< `entered`: the curve ends by an entry to `beyond_`
+  std::size_t committed_knots_ = 0;     ///< number of knots of the run at the last commit
   bool has_changes_ = false;
   bool is_damaged_ = false;
 };

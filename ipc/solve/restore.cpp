@@ -44,10 +44,9 @@ bool describes_a_run(const Summary& summary) noexcept {
 
 void PublishedCurve::restore(const Summary& summary) noexcept {
   has_changes_ = false;
-  is_entry_new_ = is_searching_ = is_prepared_ = false;
-  ending_ = EndKind::none;
-  end_search_ = EndSearch::none;
-  has_restored_shown_ = has_restored_shown_ || summary.revision == 0;
+  is_entry_new_ = is_prepared_ = false;
+  finish_ = Unfinished{};
+  if (summary.revision == 0) shown_.begin_stream();
   changed_from_ = Time::max();
   blend_until_ = summary.blend_until;
   unmet_since_ = summary.unmet_since;
@@ -59,21 +58,20 @@ void PublishedCurve::restore(const Summary& summary) noexcept {
   first_ = summary.first;
   newest_ = summary.newest;
   stop_ = summary.stop;
-  end_ = {};
-  course_ = Course::on_target;
+  rest_ = {};
+  end_ = core::OnTarget{};
   met_ = unmet_ = placed_ = passed_written_ = passed_committed_ = 0;
   met_number_ = 1;
   passed_before_ = 0;
   origin_ = {};
   committed_knots_ = summary.run_knots;
-  is_damaged_ = ends_at_known_ = false;
+  is_damaged_ = false;
   if (newest_ > 0) {
     is_damaged_ = !read_.take_last(*published_, summary_);
-    end_ = read_.right();
+    rest_ = read_.right();
   }
   if (!summary.finished && !is_damaged_) restore_run();
-  if (has_forgotten_) shown_ = committed_shown_;
-  has_forgotten_ = false;
+  shown_.discarded();
   shown_.forget_after(window_.knots() > 0 ? newest_time() : origin_.time);
   keep_settled();
 }
@@ -146,7 +144,7 @@ bool PublishedCurve::find_knot(std::size_t i, Word& line) noexcept {
 }
 
 void PublishedCurve::restore_course() noexcept {
-  course_ = static_cast<Course>(summary_.course);
+  end_ = end_of(static_cast<Course>(summary_.course));
   met_ = summary_.met;
   unmet_ = summary_.unmet;
   const std::size_t knots = summary_.run_knots;
@@ -166,18 +164,19 @@ void PublishedCurve::restore_course() noexcept {
 /// Restores the origin: the state at which the open entry, or the stop of a run without waypoints,
 /// begins.
 void PublishedCurve::restore_origin() noexcept {
-  if (newest_ == 0 || course_ == Course::on_target) return;
+  if (newest_ == 0 || core::is<core::OnTarget>(end_)) return;
   Word number = newest_;
-  if (course_ == Course::entering) {
+  auto* const entering = std::get_if<core::Entering>(&end_);
+  if (entering != nullptr) {
     number = met_number_ - 1;
   } else {
     if (!read_knot(number)) return;
     if (knot_.note.is_waypoint) return;  // the curve ends with the stop after the newest met knot
-    if (course_ == Course::beyond && !restore_beyond(number)) return;
+    if (core::is<core::EnteringAhead>(end_) && !restore_beyond(number)) return;
   }
-  if (course_ == Course::entering && number < first_) {
+  if (entering != nullptr && number < first_) {
     // The entry is no longer on the board: it has ended.
-    course_ = Course::on_target;
+    end_ = core::OnTarget{};
     unmet_ = met_;
     return;
   }
@@ -192,9 +191,9 @@ void PublishedCurve::restore_origin() noexcept {
   origin_.is_new = false;
   origin_.stopped_by = knot_.begins_stoppers_stop() ? knot_.item : 0;
   origin_.is_corner = knot_.begins_at_rest();
-  if (course_ != Course::entering || !read_knot(met_number_)) return;
+  if (entering == nullptr || !read_knot(met_number_)) return;
   is_damaged_ = is_damaged_ || !knot_.note.arrives;
-  entry_end_ = knot_.time;
+  entering->end = knot_.time;
   std::ranges::copy(knot_.acceleration(), beyond_.ref().acceleration.begin());
 }
 
@@ -203,16 +202,18 @@ void PublishedCurve::restore_origin() noexcept {
 bool PublishedCurve::restore_beyond(Word& number) noexcept {
   if (!knot_.note.arrives && (number < 2 || !read_knot(--number))) return false;
   is_damaged_ = is_damaged_ || !knot_.note.arrives || number < 2;
-  behind_ = {.end = knot_.time};
+  auto& ahead = std::get<core::EnteringAhead>(end_);
+  ahead.after = {.end = knot_.time};
   const StateRef to = beyond_.ref();
   std::ranges::copy(knot_.waypoint(), to.position.begin());
   std::ranges::copy(knot_.velocity(), to.velocity.begin());
   if (knot_.note.arrives) std::ranges::copy(knot_.acceleration(), to.acceleration.begin());
-  known_ = std::min<Word>(knot_.item, summary_.run_knots);
+  ahead.known = std::min<Word>(knot_.item, summary_.run_knots);
   --number;
-  ends_at_known_ =
-      known_ > unmet_ && published_->copy_passed(known_ - 1, board_->revision(), knot_) &&
-      knot_.item == (run_item_ << kPassedItemShift | (known_ - 1)) && knot_.time == behind_.end;
+  const std::size_t last = ahead.known - 1;
+  ahead.ends_at_known =
+      ahead.known > unmet_ && published_->copy_passed(last, board_->revision(), knot_) &&
+      knot_.item == (run_item_ << kPassedItemShift | last) && knot_.time == ahead.after.end;
   return !is_damaged_;
 }
 
@@ -247,9 +248,9 @@ void PublishedCurve::restore_run() noexcept {
   }
   window_.freeze_knots(summary_.run_frozen);
   passed_before_ = summary_.passed_over - std::min<Word>(summary_.passed_over, passed_over());
-  const bool is_open = course_ == Course::waiting || course_ == Course::beyond;
-  is_searching_ =
-      is_open && !has_given_up() && window_.knots() > (course_ == Course::beyond ? known_ : unmet_);
+  const auto* const ahead = std::get_if<core::EnteringAhead>(&end_);
+  const std::size_t used = ahead != nullptr ? ahead->known : unmet_;
+  core::set_searching(end_, !has_given_up() && window_.knots() > used);
   restart_search();
 }
 

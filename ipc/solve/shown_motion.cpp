@@ -11,6 +11,7 @@ namespace splinecast::ipc {
 
 ShownMotion::ShownMotion(const KnotBoardReader& board)
     : ShownLimits(board.dimensions()),
+      before_cut_(board.dimensions()),
       numbers_(kMost),
       knot_(board.dimensions(), board.smooths()) {}
 
@@ -22,12 +23,23 @@ void ShownMotion::restore(const KnotBoardReader& board, const Summary& summary, 
 void ShownMotion::restore(const core::SlidingWindow& window, const KnotBoardReader& board,
                           const Summary& summary, Time end, std::size_t first) noexcept {
   restore(board, summary, end);
+  is_restored_ = true;
   if (window.knots() == 0) return;
   take_passed(board, summary, first, window.oldest_segment());
   for (std::size_t i = std::max(first, window.oldest_segment()); i < window.knots(); ++i) {
     const core::Knot knot = window.knot(i);
     note(knot.time, knot.waypoint);
   }
+}
+
+void ShownMotion::begin_cut() noexcept {
+  before_cut_ = static_cast<const ShownLimits&>(*this);
+  has_cut_ = true;
+}
+
+void ShownMotion::discarded() noexcept {
+  if (has_cut_) static_cast<ShownLimits&>(*this) = before_cut_;
+  has_cut_ = false;
 }
 
 /// Takes the first knot at or after each multiple of kStep, searched backwards from `end` by the

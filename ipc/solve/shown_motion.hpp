@@ -29,13 +29,26 @@ class ShownMotion : public core::ShownLimits {
   void restore(const core::SlidingWindow& window, const KnotBoardReader& board,
                const Summary& summary, Time end, std::size_t first) noexcept;
 
+  /// Whether this has the motion that is on the board: a new stream has none.
+  [[nodiscard]] bool is_restored() const noexcept { return is_restored_; }
+  void begin_stream() noexcept { is_restored_ = true; }
+
+  /// Call before a cut of the curve drops waypoints, after the commit, and when a revision is
+  /// discarded, which takes the cut back.
+  void begin_cut() noexcept;
+  void committed() noexcept { has_cut_ = false; }
+  void discarded() noexcept;
+
  private:
   void take_met(const KnotBoardReader& board, const Summary& summary, Time end) noexcept;
   void take_passed(const KnotBoardReader& board, const Summary& summary, std::size_t first,
                    std::size_t end) noexcept;
 
-  std::vector<Word> numbers_;  ///< scratch
-  KnotCopy knot_;              ///< scratch
+  bool is_restored_ = false;
+  bool has_cut_ = false;          ///< a cut is not committed yet
+  core::ShownLimits before_cut_;  ///< this, from before that cut
+  std::vector<Word> numbers_;     ///< scratch
+  KnotCopy knot_;                 ///< scratch
 };
 
 }  // namespace splinecast::ipc

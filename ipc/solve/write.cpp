@@ -18,20 +18,20 @@ constexpr std::array<double, kMaxDimensions> kZeros{};
 constexpr std::size_t kFirstKnots = 4;
 
 /// Whether the curve of an origin is only the stop from there.
-bool only_stops(Course course) noexcept {
-  return course == Course::waiting || course == Course::starting;
+bool only_stops(const core::End& end) noexcept {
+  return core::is<core::Waiting>(end) || core::is<core::Starting>(end);
 }
 
 }  // namespace
 
 /// Writes the knot of the origin: an entry begins there or, in a run without an entry, a stop.
 void PublishedCurve::write_origin() noexcept {
-  const bool enters = !only_stops(course_) || ending_ == EndKind::entered;
+  const bool enters = !only_stops(end_) || ending() == EndKind::entered;
   const auto zeros = std::span(kZeros).first(published_->smooths() ? window_.dimensions() : 0);
   std::ranges::copy(origin_state_.acceleration(), values_.begin());
   if (!enters) core::align_rotations(window_.kinds(), origin_state_.velocity(), values_);
   const bool is_stopped = !enters && origin_.stopped_by > 0;
-  const std::size_t known = course_ == Course::entering ? search_.end().known - 1 - met_ : 0;
+  const std::size_t known = core::is<core::Entering>(end_) ? search_.end().known - 1 - met_ : 0;
   board_->write(origin_.number, {.is_new = true,
                                  .note = {.form = enters ? SegmentForm::entry : SegmentForm::stop,
                                           .starts = true,
@@ -48,56 +48,57 @@ void PublishedCurve::write_origin() noexcept {
 
 /// Writes the end of an entry beyond the newest waypoint, and the motion after it: the remainder of
 /// the straight line and the stop, or the remainder of the stop.
-void PublishedCurve::write_beyond() noexcept {
+void PublishedCurve::write_beyond(const core::EnteringAhead& ahead) noexcept {
   const auto zeros = std::span(kZeros).first(window_.dimensions());
   const auto residual = zeros.first(published_->smooths() ? window_.dimensions() : 0);
-  const bool has_line = behind_.has_line();
+  const core::AfterEntry& after = ahead.after;
+  const bool has_line = after.has_line();
   KnotRecord record{.is_new = true,
                     .note = {.form = has_line ? SegmentForm::cubic : SegmentForm::stop,
                              .arrives = true,
                              .starts = !has_line},
-                    .time = behind_.end,
-                    .begins = behind_.end,
+                    .time = after.end,
+                    .begins = after.end,
                     .position = beyond_.position(),
                     .velocity = beyond_.velocity(),
                     .acceleration = beyond_.acceleration(),
                     .residual = residual,
-                    .item = known_};
+                    .item = ahead.known};
   board_->write(origin_.number + 1, record);
   newest_ = origin_.number + 1;
   if (has_line) {
-    behind_.write_line_end(beyond_.position(), beyond_.velocity(), values_);
+    after.write_line_end(beyond_.position(), beyond_.velocity(), values_);
     record.note = {.form = SegmentForm::stop, .starts = true};
-    record.time = record.begins = behind_.line_end;
+    record.time = record.begins = after.line_end;
     record.position = values_;
     record.acceleration = zeros;
     record.item = 0;
     board_->write(++newest_, record);
   }
-  stop_ = behind_.stop_length();
-  if (stop_ > behind_.rest - behind_.stop_begin()) {
+  stop_ = after.stop_length();
+  if (stop_ > after.rest - after.stop_begin()) {
     // The motion at the end of the former stop may need longer.
     stop_ = std::max(stop_, core::least_stop_time(window_.limits_at_largest_rate(), kinds_,
-                                                  {behind_.end, beyond_.position(),
+                                                  {after.end, beyond_.position(),
                                                    beyond_.velocity(), beyond_.acceleration()}));
   }
-  end_ = behind_.stop_begin() + stop_;
+  rest_ = after.stop_begin() + stop_;
 }
 
 /// Writes the end of an entry that ends the curve.
 void PublishedCurve::write_ending() noexcept {
   const auto zeros = std::span(kZeros).first(window_.dimensions());
   newest_ = origin_.number + 1;
+  stop_ = Time::zero();
+  rest_ = std::get<Ended>(finish_).rest;
   board_->write(newest_, {.is_new = true,
                           .note = {.arrives = true},
-                          .time = behind_.end,
-                          .begins = behind_.end,
+                          .time = rest_,
+                          .begins = rest_,
                           .position = beyond_.position(),
                           .velocity = zeros,
                           .acceleration = zeros,
                           .residual = zeros.first(published_->smooths() ? zeros.size() : 0)});
-  stop_ = Time::zero();
-  end_ = behind_.end;
 }
 
 /// Adds the row of knot i to its record if an append may have changed it: an append changes the
@@ -140,7 +141,7 @@ void PublishedCurve::write_unmet(std::size_t end) noexcept {
   const std::size_t solved = knots - std::min(knots, window_.options().settle);
   const std::size_t changed = std::min(solved, committed_knots_);
   const std::size_t first = std::min(changed - std::min(changed, look_ahead_), passed_written_);
-  write_passed(std::max({first, passed_first(), passed_lowest_}), end);
+  write_passed(std::max({first, window_.first_to_restore(), passed_lowest_}), end);
 }
 
 /// Appends since the commit have changed at most the velocities of the knots before this one. 0 if
@@ -171,7 +172,7 @@ void PublishedCurve::write_knots(std::size_t first, std::size_t end) noexcept {
 void PublishedCurve::write_knot(std::size_t i) noexcept {
   const core::Knot knot = window_.knot(i);
   const bool is_newest = i + 1 == window_.knots();
-  const bool ends_entry = i == met_ && course_ == Course::entering;
+  const bool ends_entry = i == met_ && core::is<core::Entering>(end_);
   KnotRecord record{.is_new = i >= placed_,
                     .note = {.form = window_.form(i),
                              .is_waypoint = true,
@@ -187,7 +188,7 @@ void PublishedCurve::write_knot(std::size_t i) noexcept {
   if (record.note.form == SegmentForm::stop) {
     // A knot stores one acceleration: if a segment arrives with a given one, the stop starts with
     // it.
-    if (ending_ == EndKind::stopped) {
+    if (ending() == EndKind::stopped) {
       stop_behind_newest(segment_);
       stop_ = segment_.right - segment_.left;
     } else if (ends_entry) {
@@ -195,7 +196,7 @@ void PublishedCurve::write_knot(std::size_t i) noexcept {
     } else {
       stop_ = window_.write_stop(values_);
     }
-    end_ = knot.time + stop_;
+    rest_ = knot.time + stop_;
     record.note.starts = true;
     if (!ends_entry) record.acceleration = values_;
   }
@@ -211,11 +212,12 @@ void PublishedCurve::write_knot(std::size_t i) noexcept {
 
 /// Writes the changes of a curve that does not end on the target, and the stop at its end.
 void PublishedCurve::write_off_line(bool writes_origin) noexcept {
-  if (is_entry_new_) write_beyond();
-  if (writes_origin && only_stops(course_)) {
+  const auto* const ahead = std::get_if<core::EnteringAhead>(&end_);
+  if (is_entry_new_ && ahead != nullptr) write_beyond(*ahead);
+  if (writes_origin && only_stops(end_)) {
     newest_ = origin_.number;
     stop_ = core::build_stop_within(window_.stop_rules(), origin_state(), segment_);
-    end_ = origin_.time + stop_;
+    rest_ = origin_.time + stop_;
   }
   if (window_.knots() > 0) write_unmet(window_.knots());
 }
@@ -228,7 +230,7 @@ void PublishedCurve::write_on_line() noexcept {
   newest_ = number_of(knots - 1);
   if (!window_.finished()) return;
   stop_ = Time::zero();
-  end_ = window_.time(knots - 1);
+  rest_ = window_.time(knots - 1);
 }
 
 /// Removes from the range of knots the oldest ones, which the newest ones have overwritten.
@@ -245,12 +247,12 @@ Time PublishedCurve::write() noexcept {
   if (has_changes_ && (window_.knots() > 0 || window_.is_later_run())) {
     const bool writes_origin = origin_.number > 0 && (origin_.is_new || is_entry_new_);
     if (writes_origin) write_origin();
-    if (ending_ == EndKind::entered) {
+    if (ending() == EndKind::entered) {
       write_ending();
-    } else if (ending_ == EndKind::slowed) {
+    } else if (ending() == EndKind::slowed) {
       is_damaged_ = !slowed_.write(*board_) || is_damaged_;
       stop_ = Time::zero();
-      end_ = slowed_.end();
+      rest_ = slowed_.end();
     } else if (is_on_line()) {
       write_on_line();
     } else {
@@ -262,6 +264,7 @@ Time PublishedCurve::write() noexcept {
 }
 
 CurveSummary PublishedCurve::summary() const noexcept {
+  const auto* const ahead = std::get_if<core::EnteringAhead>(&end_);
   return {.first = first_,
           .newest = newest_,
           .stop = stop_,
@@ -270,14 +273,30 @@ CurveSummary PublishedCurve::summary() const noexcept {
           .run_item = run_item_,
           .run_frozen = window_.frozen_knots(),
           .is_later_run = window_.is_later_run(),
-          .course = course_,
+          .course = course(),
           .met = met_,
           .unmet = unmet_,
-          .goal = course_ == Course::beyond && ends_at_known_ ? known_ : 0,
+          .goal = ahead != nullptr && ahead->ends_at_known ? ahead->known : 0,
           .blend_until = blend_until_,
           .passed_over = passed_before_ + passed_over(),
           .unmet_since = unmet_since_,
           .refused_until = refused_until_};
+}
+
+core::End end_of(Course course) noexcept {
+  switch (course) {
+    case Course::on_target:
+      break;
+    case Course::waiting:
+      return core::Waiting{};
+    case Course::entering:
+      return core::Entering{};
+    case Course::beyond:
+      return core::EnteringAhead{};
+    case Course::starting:
+      return core::Starting{};
+  }
+  return core::OnTarget{};
 }
 
 void put_summary(const CurveSummary& curve, Summary& summary) noexcept {

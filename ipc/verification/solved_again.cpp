@@ -121,7 +121,7 @@ bool StreamReplay::solve_stop(std::size_t s, const Instant& from, StopPart part)
   const core::StopRules rules = target_.window().stop_rules();
   if (has_former_rules()) {
     const bool is_whole = part != StopPart::remainder;
-    const Time length = is_whole ? former_stop_time(rules, from) : behind_.stop_length();
+    const Time length = is_whole ? former_stop_time(rules, from) : after_entry_.stop_length();
     core::build_stop(from.time, length, from.position, from.velocity, from.acceleration, solved_);
     return compare_solved(s);
   }
@@ -182,7 +182,7 @@ bool StreamReplay::solve_entry(std::size_t s) {
     extrapolation_.state_at(end.time, end_.ref());
     end.position = end_.position();
     end.velocity = end_.velocity();
-    behind_ = {
+    after_entry_ = {
         .end = end.time, .line_end = extrapolation_.line_end(), .rest = extrapolation_.rest()};
   }
   end.acceleration = end_.acceleration();
@@ -194,20 +194,20 @@ bool StreamReplay::solve_entry(std::size_t s) {
 bool StreamReplay::solve_behind_entry(std::size_t s) {
   const auto position = std::span(values_);
   const bool is_line = segments_[s].kind == SegmentKind::spline;
-  behind_.write_line_end(end_.position(), end_.velocity(), position);
+  after_entry_.write_line_end(end_.position(), end_.velocity(), position);
   if (is_line) {
     core::build_segment(core::SegmentForm::cubic,
-                        {behind_.end, end_.position(), end_.velocity(), {}, {}},
-                        {behind_.line_end, position, end_.velocity(), {}, {}}, solved_);
+                        {after_entry_.end, end_.position(), end_.velocity(), {}, {}},
+                        {after_entry_.line_end, position, end_.velocity(), {}, {}}, solved_);
     return compare_solved(s);
   }
   return solve_stop(
       s,
-      {.time = behind_.stop_begin(),
-       .position = behind_.has_line() ? std::span<const double>(position) : end_.position(),
+      {.time = after_entry_.stop_begin(),
+       .position = after_entry_.has_line() ? std::span<const double>(position) : end_.position(),
        .velocity = end_.velocity(),
        .acceleration = end_.acceleration()},
-      behind_.has_line() ? StopPart::whole : StopPart::remainder);
+      after_entry_.has_line() ? StopPart::whole : StopPart::remainder);
 }
 
 /// Whether the entry that ends the curve is the first one of its run.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/motion/end.hpp"
 #include "core/motion/extrapolation.hpp"
 #include "core/motion/slowed_path.hpp"
 #include "core/polynomial/segment.hpp"
@@ -87,7 +88,7 @@ class StreamReplay {
   core::Segment solved_;
   State end_;  ///< state at the end of an entry
   core::Extrapolation extrapolation_;
-  BehindEntry behind_;
+  core::AfterEntry after_entry_;
   core::SlowedPath path_;
   core::Segment piece_;                     ///< scratch: of the path
   std::size_t slowed_ = 0;                  ///< segment at which the curve begins to slow down

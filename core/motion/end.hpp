@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <variant>
+
+#include "splinecast/time.hpp"
+
+/// How a curve ends, relative to its *target*, the spline through the waypoints of a run. The
+/// states at the ends of entries are kept beside it: their size is known only at run time.
+namespace splinecast::core {
+
+/// The curve follows the target: after the newest waypoint comes its stop.
+struct OnTarget {};
+
+/// The curve ends in a stop, or rests: only an entry leads to the target.
+struct Waiting {
+  bool is_searching = false;  ///< for that entry
+};
+
+/// An entry ends at a waypoint of the run, and the target follows.
+struct Entering {
+  Time end{};  ///< of the entry
+};
+
+/// The times of the motion after an entry that ends ahead of the newest waypoint: the remainder of
+/// the straight line, unless the entry ends after the line, and the stop.
+struct AfterEntry {
+  Time end{};       ///< of the entry
+  Time line_end{};  ///< of the line
+  Time rest{};      ///< end of the stop
+
+  [[nodiscard]] bool has_line() const noexcept { return end < line_end; }
+  [[nodiscard]] Time stop_begin() const noexcept { return has_line() ? line_end : end; }
+  [[nodiscard]] Time stop_length() const noexcept;
+
+  /// Writes the position at the end of the line.
+  void write_line_end(std::span<const double> position, std::span<const double> velocity,
+                      std::span<double> out) const noexcept;
+};
+
+/// An entry ends ahead of the newest waypoint, and a stop follows.
+struct EnteringAhead {
+  AfterEntry after{};
+  std::size_t known = 0;       ///< number of waypoints that the entry used
+  bool ends_at_known = false;  ///< it ends at waypoint known - 1, which the curve has not met yet
+  bool is_searching = false;   ///< for another entry, because newer waypoints are known
+};
+
+/// The curve rests at the first waypoint of a stream, until it is decided how it starts.
+struct Starting {};
+
+using End = std::variant<OnTarget, Waiting, Entering, EnteringAhead, Starting>;
+
+template <typename T>
+[[nodiscard]] constexpr bool is(const End& end) noexcept {
+  return std::holds_alternative<T>(end);
+}
+
+/// Whether the curve ends with a piece of the target.
+[[nodiscard]] constexpr bool is_on_target(const End& end) noexcept {
+  return is<OnTarget>(end) || is<Entering>(end);
+}
+
+/// Whether the end waits for an entry, or for a better one.
+[[nodiscard]] constexpr bool may_enter(const End& end) noexcept {
+  return is<Waiting>(end) || is<EnteringAhead>(end);
+}
+
+[[nodiscard]] constexpr bool is_searching(const End& end) noexcept {
+  const auto* const waiting = std::get_if<Waiting>(&end);
+  const auto* const ahead = std::get_if<EnteringAhead>(&end);
+  return (waiting != nullptr && waiting->is_searching) || (ahead != nullptr && ahead->is_searching);
+}
+
+/// Begins or ends the search of an end that may_enter(); changes no other.
+constexpr void set_searching(End& end, bool is_searching) noexcept {
+  if (auto* const waiting = std::get_if<Waiting>(&end)) waiting->is_searching = is_searching;
+  if (auto* const ahead = std::get_if<EnteringAhead>(&end)) ahead->is_searching = is_searching;
+}
+
+}  // namespace splinecast::core
