@@ -36,6 +36,7 @@ AttackedStream::AttackedStream(Plan plan)
 AttackedStream::~AttackedStream() {
   producer_.reset();
   solver_.reset();
+  dying_.clear();
   readers_.clear();
   remove_files();
 }
@@ -109,6 +110,7 @@ void AttackedStream::observe() {
 }
 
 void AttackedStream::reap() {
+  std::erase_if(dying_, [](apps::Child& child) { return child.ended().has_value(); });
   reap(producer_, Role::producer);
   reap(solver_, Role::solver);
   for (Reading& reading : readers_) reap(reading.child, Role::reader);
@@ -129,6 +131,11 @@ bool AttackedStream::kill(Role role, std::size_t which) {
                 : role == Role::solver ? solver_
                                        : readers_[which].child;
   if (!child) return false;
+  if (role == Role::solver) {
+    // The kernel can take long to end it. The next one waits for its locks only.
+    child->signal(SIGKILL);
+    dying_.push_back(std::move(*child));
+  }
   child.reset();
   if (role == Role::reader) killed_reader_ = which;
   note_kill(role);
@@ -252,6 +259,7 @@ void AttackedStream::count_items() {
 
 void AttackedStream::remove_at_end() {
   if (solver_) kill(Role::solver);
+  dying_.clear();
   std::optional<apps::Child> remover;
   remover.emplace([this] {
     run_remover(plan_, *journal_);
@@ -323,6 +331,7 @@ Findings AttackedStream::finish() {
 
 /// Removes the stream as `rm` does. No file may remain that must be removed by hand.
 void AttackedStream::remove_files() {
+  dying_.clear();
   check_.reset();
   observer_.reset();
   try {

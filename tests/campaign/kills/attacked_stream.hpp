@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -84,6 +85,7 @@ class AttackedStream {
   MonotonicClock clock_;
   std::optional<apps::Child> producer_;
   std::optional<apps::Child> solver_;
+  std::list<apps::Child> dying_;  ///< solvers that were killed
   std::vector<Reading> readers_;
   std::size_t killed_reader_ = 0;
   std::optional<Reader> observer_;

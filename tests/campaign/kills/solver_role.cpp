@@ -1,6 +1,9 @@
 #include <chrono>
+#include <optional>
 
 #include "apps/process/signals.hpp"
+#include "splinecast/clock.hpp"
+#include "splinecast/errors.hpp"
 #include "splinecast/solver.hpp"
 #include "splinecast/streams.hpp"
 #include "tests/campaign/kills/roles.hpp"
@@ -19,6 +22,17 @@ Step publishing(ipc::ItemKind kind) {
     default:
       return Step::publish;
   }
+}
+
+/// Waits until the locks of a solver that was just killed are free.
+std::optional<Solver> make_solver(const Plan& plan, const Clock& clock) {
+  do {
+    try {
+      return Solver(plan.stream, plan.solver_options());
+    } catch (const StreamBusy&) {  // the attacking process counts a hang if it stays so
+    }
+  } while (apps::sleep_until(clock.now() + std::chrono::microseconds(200)));
+  return std::nullopt;
 }
 
 bool attach(Solver& solver, Journal& journal, Step making) {
@@ -45,12 +59,12 @@ void sleep(Solver& solver, Journal& journal) {
 
 void run_solver(const Plan& plan, Journal& journal) {
   const MonotonicClock clock;
-  Solver solver(plan.stream, plan.solver_options());
+  std::optional<Solver> solver = make_solver(plan, clock);
   Step making = Step::make_board;
-  while (!apps::stop_requested()) {
-    const bool is_attached = solver.attached() || attach(solver, journal, making);
+  while (solver && !apps::stop_requested()) {
+    const bool is_attached = solver->attached() || attach(*solver, journal, making);
     if (is_attached) making = Step::make_board_again;
-    if (!is_attached || !step(solver, journal, clock)) sleep(solver, journal);
+    if (!is_attached || !step(*solver, journal, clock)) sleep(*solver, journal);
   }
 }
 
