@@ -32,9 +32,10 @@ Registry& registry() {
   return *the_registry;
 }
 
-/// The kernel closes the files of a killed process from the highest number to the lowest, and the
-/// end of an event queue takes it milliseconds, on a busy machine seconds. So files, which may be
-/// locked, have numbers from this one on, and event queues have lower ones.
+/// The kernel closes the descriptors of a killed process from the highest number to the lowest. For
+/// an event queue this takes milliseconds, on a busy machine seconds. Files may be locked: they get
+/// numbers from this one on. Event queues get the lowest free number, which is lower unless the
+/// process has that many other descriptors.
 constexpr int kFirstOfFiles = 64;
 
 /// Opens a file, with such a number if the limit of the process allows it.

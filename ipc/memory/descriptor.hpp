@@ -16,8 +16,8 @@ class OwnedDescriptor {
   /// waits until the descriptor is registered for closing in children.
   [[nodiscard]] static OwnedDescriptor open(const std::string& path, int flags, mode_t mode = 0);
 
-  /// The same with inotify_init1(2): an event queue that is read without waiting. Close it after
-  /// the locks of this process: that may take long.
+  /// The same with inotify_init1(2): an event queue that is read without waiting.
+  /// Closing it may take long: release the locks of this process before.
   [[nodiscard]] static OwnedDescriptor event_queue();
 
   OwnedDescriptor(OwnedDescriptor&& other) noexcept;

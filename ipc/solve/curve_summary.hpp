@@ -36,7 +36,7 @@ struct CurveOrigin {
 };
 
 /// The end that is tried: slowing down, or an entry to the last waypoint from there.
-enum class EndTrial {
+enum class EndAttempt {
   slowing,       ///< slowing down from a knot of the published curve
   from_knots,    ///< at knots of the published curve, the latest one first
   from_settled,  ///< in the published curve, as it settles
@@ -46,7 +46,7 @@ enum class EndTrial {
 /// Whether a curve has been finished: not yet, or its end is being searched for, or it has one.
 struct Unfinished {};
 struct SearchingEnd {
-  EndTrial trial{};
+  EndAttempt attempt{};
   std::size_t knot = 0;  ///< from_knots: the knot after the one that is tried
 };
 struct Ended {
@@ -59,6 +59,12 @@ using FinishState = std::variant<Unfinished, SearchingEnd, Ended>;
 [[nodiscard]] constexpr Course course_of(const core::End& end) noexcept {
   return static_cast<Course>(end.index());
 }
+static_assert(std::variant_size_v<core::End> == kCourses);
+static_assert(course_of(core::OnTarget{}) == Course::on_target);
+static_assert(course_of(core::Waiting{}) == Course::waiting);
+static_assert(course_of(core::Entering{}) == Course::entering);
+static_assert(course_of(core::EnteringAhead{}) == Course::beyond);
+static_assert(course_of(core::Starting{}) == Course::starting);
 /// An end of this course, without its values.
 [[nodiscard]] core::End end_of(Course course) noexcept;
 

@@ -96,7 +96,7 @@ bool PublishedCurve::finish(const Condition& end, Time settled, Time keep, int& 
   if (has_changes_) return false;
   const bool has_settled = knots < 2 || window_.time(knots - 2) < settled;
   if (has_settled) return search_end(settled, tries);
-  if (!is_begun || is_trying(EndTrial::slowing)) {
+  if (!is_begun || is_trying(EndAttempt::slowing)) {
     if (!slow_down(settled, tries)) return false;
     if (ending() != EndKind::none || is_damaged_) return true;
   }
@@ -106,8 +106,8 @@ bool PublishedCurve::finish(const Condition& end, Time settled, Time keep, int& 
 /// Searches for the latest knot from which on the curve can slow down on its path. Returns false if
 /// the search has not ended.
 bool PublishedCurve::slow_down(Time settled, int& tries) noexcept {
-  if (!is_trying(EndTrial::slowing)) {
-    finish_ = SearchingEnd{EndTrial::slowing};
+  if (!is_trying(EndAttempt::slowing)) {
+    finish_ = SearchingEnd{EndAttempt::slowing};
     slowed_.restart(summary_, end_limits_);
   }
   switch (slowed_.search(number_of(met_) + 1, settled, tries)) {
@@ -131,8 +131,8 @@ bool PublishedCurve::slow_down(Time settled, int& tries) noexcept {
 /// the curve ends in the shortest stop after its last waypoint. Returns false if the search has not
 /// ended.
 bool PublishedCurve::search_end_from_knots(Time settled, int& tries) noexcept {
-  if (!is_trying(EndTrial::from_knots)) {
-    finish_ = SearchingEnd{EndTrial::from_knots, window_.knots() - 1};
+  if (!is_trying(EndAttempt::from_knots)) {
+    finish_ = SearchingEnd{EndAttempt::from_knots, window_.knots() - 1};
     search_.restart(0);
     look_at_shown();
   }
@@ -189,7 +189,7 @@ Instant PublishedCurve::rest_at_newest() noexcept {
 /// Finds the state in which an entry to the last waypoint may begin. Returns false if the board is
 /// damaged.
 bool PublishedCurve::prepare_end(Time settled) noexcept {
-  if (!is_trying(EndTrial::from_rest)) return prepare(settled);
+  if (!is_trying(EndAttempt::from_rest)) return prepare(settled);
   uses_cut_ = true;
   is_damaged_ = is_damaged_ || !cut_.find(summary_, std::max(settled, rest_));
   return !is_damaged_ && find_reach(Time::max());
@@ -225,10 +225,10 @@ bool PublishedCurve::search_end(Time settled, int& tries) noexcept {
       finish_ = Ended{EndKind::as_requested};
       return true;
     }
-    const bool is_from_rest = is_trying(EndTrial::from_rest);
-    if (!is_from_rest && !is_trying(EndTrial::from_settled)) {
+    const bool is_from_rest = is_trying(EndAttempt::from_rest);
+    if (!is_from_rest && !is_trying(EndAttempt::from_settled)) {
       search_.restart(0);
-      finish_ = SearchingEnd{EndTrial::from_settled};
+      finish_ = SearchingEnd{EndAttempt::from_settled};
     }
     const auto outcome = search_.search_rest(
         rest, from, entry_rules(),
@@ -244,7 +244,7 @@ bool PublishedCurve::search_end(Time settled, int& tries) noexcept {
       return true;
     }
     // The stop of a state that is not committed yet is not on the board.
-    finish_ = SearchingEnd{EndTrial::from_rest};
+    finish_ = SearchingEnd{EndAttempt::from_rest};
     search_.restart(0);
     if (origin_.is_new) return false;
     if (!prepare_end(settled)) return true;

@@ -119,8 +119,8 @@ void PublishedCurve::freeze(Time t) noexcept {
   keep_settled();
 }
 
-/// Lets the curve wait: its end is final, so that only an entry can lead to
-/// the next waypoint. The curve meets the leading `met` knots of the run.
+/// Makes the end of the curve final: only an entry can lead to the next waypoint. The curve meets
+/// the leading `met` knots of the run.
 void PublishedCurve::wait_for_entry(std::size_t met) noexcept {
   end_ = core::Waiting{};
   met_ = placed_ = window_.knots();

@@ -291,9 +291,9 @@ class PublishedCurve {
 
   // The end: finish.cpp.
   /// Whether this end is being tried.
-  [[nodiscard]] bool is_trying(EndTrial trial) const noexcept {
+  [[nodiscard]] bool is_trying(EndAttempt attempt) const noexcept {
     const auto* const search = std::get_if<SearchingEnd>(&finish_);
-    return search != nullptr && search->trial == trial;
+    return search != nullptr && search->attempt == attempt;
   }
   void finish_on_line(const Condition& end) noexcept;
   void find_end_limits() noexcept;

@@ -33,10 +33,11 @@ class ShownMotion : public core::ShownLimits {
   [[nodiscard]] bool is_restored() const noexcept { return is_restored_; }
   void begin_stream() noexcept { is_restored_ = true; }
 
-  /// Call before a cut of the curve drops waypoints, after the commit, and when a revision is
-  /// discarded, which takes the cut back.
+  /// Keeps a copy. Call before a cut of the curve makes this forget waypoints.
   void begin_cut() noexcept;
+  /// The revision with the cut has been committed.
   void committed() noexcept { has_cut_ = false; }
+  /// The revision with the cut has been discarded: this is as before the cut.
   void discarded() noexcept;
 
  private:

@@ -36,7 +36,6 @@ AttackedStream::AttackedStream(Plan plan)
 AttackedStream::~AttackedStream() {
   producer_.reset();
   solver_.reset();
-  dying_.clear();
   readers_.clear();
   remove_files();
 }

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
+#include "splinecast/solver.hpp"
 #include "tests/campaign/kills/plan.hpp"
 
 /// Main functions of the processes of an attacked stream. They run until SIGTERM or SIGKILL. A
@@ -10,6 +14,10 @@ namespace splinecast::campaign {
 /// stream after its last waypoint, and a live one on SIGTERM. Replaces the future of a live stream
 /// at random instants.
 void run_producer(const Plan& plan, Journal& journal);
+
+/// A solver of a stream, when the locks of a killed one are free; nothing after SIGTERM.
+[[nodiscard]] std::optional<Solver> await_solver(const std::string& stream,
+                                                 const SolverOptions& options);
 
 /// Solves the stream of this name.
 void run_solver(const Plan& plan, Journal& journal);

@@ -24,17 +24,6 @@ Step publishing(ipc::ItemKind kind) {
   }
 }
 
-/// Waits until the locks of a solver that was just killed are free.
-std::optional<Solver> make_solver(const Plan& plan, const Clock& clock) {
-  do {
-    try {
-      return Solver(plan.stream, plan.solver_options());
-    } catch (const StreamBusy&) {  // the attacking process counts a hang if it stays so
-    }
-  } while (apps::sleep_until(clock.now() + std::chrono::microseconds(200)));
-  return std::nullopt;
-}
-
 bool attach(Solver& solver, Journal& journal, Step making) {
   WithinStep attaching(journal, making);
   if (!solver.attach()) return false;
@@ -57,9 +46,20 @@ void sleep(Solver& solver, Journal& journal) {
 
 }  // namespace
 
+std::optional<Solver> await_solver(const std::string& stream, const SolverOptions& options) {
+  const MonotonicClock clock;
+  do {
+    try {
+      return Solver(stream, options);
+    } catch (const StreamBusy&) {  // the attacking process counts a hang if it stays so
+    }
+  } while (apps::sleep_until(clock.now() + std::chrono::microseconds(200)));
+  return std::nullopt;
+}
+
 void run_solver(const Plan& plan, Journal& journal) {
   const MonotonicClock clock;
-  std::optional<Solver> solver = make_solver(plan, clock);
+  std::optional<Solver> solver = await_solver(plan.stream, plan.solver_options());
   Step making = Step::make_board;
   while (solver && !apps::stop_requested()) {
     const bool is_attached = solver->attached() || attach(*solver, journal, making);

@@ -26,6 +26,7 @@
 #include "splinecast/streams.hpp"
 #include "tests/campaign/campaigns.hpp"
 #include "tests/campaign/kills/journal.hpp"
+#include "tests/campaign/kills/roles.hpp"
 #include "tests/campaign/requests/stops.hpp"
 
 namespace splinecast::campaign {
@@ -33,7 +34,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr Time kPatience = std::chrono::minutes(1);
 constexpr std::string_view kName = "anna";
 /// Steps of the solver after a request, within which it commits that.
 constexpr int kSteps = 4;
@@ -44,25 +44,17 @@ constexpr std::uint64_t kMostStores = 500;
 
 /// Memory that the attacking process shares with those that it kills.
 struct Orders {
-  std::atomic<bool> pauses;     ///< the solver must do no step
-  std::atomic<bool> is_paused;  ///< it does none
-  std::atomic<std::uint64_t>
-      store;                       ///< before this store of its next steps the solver dies; 0: not
-  std::atomic<bool> has_survived;  ///< it has done these steps
-  std::atomic<bool> has_returned;  ///< the call of the stopper that was to be killed has returned
+  std::atomic<bool> pauses;          ///< the solver must do no step
+  std::atomic<bool> is_paused;       ///< it does none
+  std::atomic<std::uint64_t> store;  ///< of its next steps, before which the solver dies; 0: none
+  std::atomic<bool> has_survived;    ///< it has done these steps
+  std::atomic<bool> has_returned;    ///< the call of the stopper that was to be killed has returned
 };
 
 /// Solves a stream; dies where it is ordered to.
 void run_ordered_solver(const std::string& stream, Orders& orders) {
   const MonotonicClock clock;
-  std::optional<Solver> solver;
-  while (!solver && !apps::stop_requested()) {
-    try {
-      solver.emplace(stream, SolverOptions{});
-    } catch (const StreamBusy&) {
-      (void)apps::sleep_until(clock.now() + milliseconds(1));  // the killed one has just died
-    }
-  }
+  std::optional<Solver> solver = await_solver(stream, {});
   int steps = 0;
   while (!apps::stop_requested()) {
     orders.is_paused = orders.pauses.load();
@@ -117,18 +109,12 @@ class StoppedStream {
   std::uint64_t stopper_in(bool before, const std::function<void(Stopper&)>& call, bool after) {
     return each_store([&](std::uint64_t store) {
       request(before);
-      orders_->has_returned = false;
-      apps::Child child([&] {
+      return stopper_dies(before, after, [&] {
         Stopper stopper(stream_, std::string(kName));
         kill_before_store(store);
         call(stopper);
         kill_before_store(0);
-        orders_->has_returned = true;
-        return nullptr;
       });
-      const bool died = has_died(child);
-      check(before, after);
-      return died;
     });
   }
 
@@ -137,17 +123,11 @@ class StoppedStream {
     return each_store([&](std::uint64_t store) {
       request(false);
       remove_request();
-      orders_->has_returned = false;
-      apps::Child child([&] {
+      return stopper_dies(false, false, [&] {
         kill_before_store(store);
         const Stopper stopper(stream_, std::string(kName));
         kill_before_store(0);
-        orders_->has_returned = true;
-        return nullptr;
       });
-      const bool died = has_died(child);
-      check(false, false);
-      return died;
     });
   }
 
@@ -174,7 +154,7 @@ class StoppedStream {
         orders_->store = 0;
         start_solver();
       }
-      if (!stopper.wait_in_force(number, kPatience)) ++lost_;
+      if (!stopper.wait_in_force(number, kLongestRequest)) ++lost_;
       compare(after);
       return died;
     });
@@ -212,19 +192,28 @@ class StoppedStream {
     });
   }
 
-  [[nodiscard]] bool has_died(apps::Child& child) {
+  /// Runs a process that may die, and checks the request that it leaves. Returns whether it died.
+  bool stopper_dies(bool before, bool after, const std::function<void()>& run) {
+    orders_->has_returned = false;
+    apps::Child child([&] {
+      run();
+      orders_->has_returned = true;
+      return nullptr;
+    });
     std::optional<int> code;
     await("the end of a stopper", [&] { return (code = child.ended()).has_value(); });
-    if (*code != 0 && *code != -SIGKILL) ++failed_;
-    if (*code == -SIGKILL) ++kills_;
-    return *code == -SIGKILL;
+    const bool died = *code == -SIGKILL;
+    if (died) ++kills_;
+    if (!died && *code != 0) ++failed_;
+    check(before, after);
+    return died;
   }
 
   /// Puts a stop or a release in force.
   void request(bool stops) {
     Stopper stopper(stream_, std::string(kName));
     const std::uint64_t number = stops ? stopper.stop() : stopper.release();
-    if (!stopper.wait_in_force(number, kPatience)) ++lost_;
+    if (!stopper.wait_in_force(number, kLongestRequest)) ++lost_;
   }
 
   /// Removes the region of a stopper that has released the stream.
@@ -255,7 +244,7 @@ class StoppedStream {
   /// Whether the board names the stopper exactly if it holds the stream, and the machine rests
   /// then.
   void compare(bool is_latched) {
-    const Time end = clock_.now() + kPatience;
+    const Time end = clock_.now() + kLongestRequest;
     while (is_on_board() != is_latched) {
       if (!apps::sleep_until(clock_.now() + milliseconds(1)) || clock_.now() > end) {
         ++different_;
@@ -263,7 +252,7 @@ class StoppedStream {
       }
     }
     if (!is_latched) return;
-    (void)apps::sleep_until(clock_.now() + milliseconds(300));
+    (void)apps::sleep_until(clock_.now() + milliseconds(300));  // the curve stops within 0.26 s
     if (is_moving()) ++moved_;
   }
 
@@ -284,7 +273,7 @@ class StoppedStream {
 
   template <typename Condition>
   void await(const char* what, const Condition& condition) {
-    const Time end = clock_.now() + kPatience;
+    const Time end = clock_.now() + kLongestRequest;
     while (!condition()) {
       if (clock_.now() > end || !apps::sleep_until(clock_.now() + std::chrono::microseconds(200))) {
         throw apps::Failure(fmt::format("'{}' waits in vain for {}", stream_, what));

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,9 @@
 #include "splinecast/time.hpp"
 
 namespace splinecast::campaign {
+
+/// A request that takes longer is lost, also on a busy machine.
+inline constexpr Time kLongestRequest = std::chrono::minutes(1);
 
 /// A histogram of times, in memory that processes share.
 class SharedTimes {

@@ -1,3 +1,4 @@
+#include "tests/campaign/kills/roles.hpp"
 #include "tests/campaign/requests/roles.hpp"
 
 #include <algorithm>
@@ -20,7 +21,6 @@ namespace {
 using std::chrono::milliseconds;
 
 /// After this time a request is lost.
-constexpr Time kPatience = std::chrono::minutes(1);
 
 /// The rate of a law is read from a position in seconds since its origin.
 constexpr double kRounding = 1e-6;
@@ -32,7 +32,7 @@ class RandomCommander {
                   RequestFacts& facts)
       : own_(law, name),
         board_(law, {}),
-        law_(law, kPatience),
+        law_(law, kLongestRequest),
         name_(name),
         facts_(facts),
         random_(seed) {}
@@ -71,7 +71,7 @@ class RandomCommander {
   /// Waits until a request is in force. Returns its row; nothing if it is lost.
   std::optional<ipc::CommanderEntry> await(std::uint64_t number, Time made,
                                            RequestFacts::Count& count) {
-    if (!own_.wait_in_force(number, kPatience)) {
+    if (!own_.wait_in_force(number, kLongestRequest)) {
       if (!apps::stop_requested()) ++facts_.lost;
       return std::nullopt;
     }
@@ -106,7 +106,7 @@ class RandomCommander {
     const auto number = own_.set_rate(std::max(rate(), 0.01), ramp());
     own_.set_dead_man(Time::zero());
     if (!await(number, made, facts_.rates)) return;
-    for (const Time end = clock_.now() + kPatience; clock_.now() < end;) {
+    for (const Time end = clock_.now() + kLongestRequest; clock_.now() < end;) {
       const auto own = entry();
       if (own && own->is_dead && own->number == number) {
         ++facts_.dead_men;
@@ -135,14 +135,7 @@ class RandomCommander {
 
 void run_solver_of(const std::string& stream) {
   const MonotonicClock clock;
-  std::optional<Solver> solver;
-  while (!solver && !apps::stop_requested()) {
-    try {
-      solver.emplace(stream, SolverOptions{});
-    } catch (const StreamBusy&) {
-      (void)apps::sleep_until(clock.now() + milliseconds(1));  // the killed one has just died
-    }
-  }
+  std::optional<Solver> solver = await_solver(stream, {});
   while (!apps::stop_requested()) {
     if (!solver->attached()) (void)solver->attach();
     const StepResult result = solver->step(clock);
@@ -164,7 +157,7 @@ void run_commander(const std::string& law, const std::string& name, std::uint64_
 
 void run_bound_check(const std::string& law, RequestFacts& facts) {
   const MonotonicClock clock;
-  Reader reader(law, kPatience);
+  Reader reader(law, kLongestRequest);
   ipc::LawBoard board(law, {});
   State state(1);
   while (apps::sleep_until(clock.now() + std::chrono::microseconds(200))) {

@@ -22,7 +22,6 @@ namespace {
 using std::chrono::milliseconds;
 
 /// After this time a request is lost.
-constexpr Time kPatience = std::chrono::minutes(1);
 /// A motion that is at rest moves by less than this.
 constexpr double kRest = 1e-12;
 
@@ -51,7 +50,7 @@ class RandomStopper {
 
   /// Waits until a stop is in force, and then watches that the machine comes to rest and stays.
   void watch(std::uint64_t number, Time made) {
-    if (!own_.wait_in_force(number, kPatience)) {
+    if (!own_.wait_in_force(number, kLongestRequest)) {
       if (!apps::stop_requested()) ++facts_.lost_stops;
       return;
     }
@@ -84,7 +83,7 @@ class RandomStopper {
   }
 
   void release() {
-    if (!own_.wait_in_force(own_.release(), kPatience)) {
+    if (!own_.wait_in_force(own_.release(), kLongestRequest)) {
       if (!apps::stop_requested()) ++facts_.lost_stops;
       return;
     }
@@ -122,7 +121,7 @@ class Swing {
     if (std::uniform_int_distribution<std::int64_t>(0, kRare)(random_) > 0) return true;
     ++facts_.streams_created;
     if (producer_.finish() != AppendStatus::accepted) return true;
-    (void)producer_.wait_until_consumed(kPatience);
+    (void)producer_.wait_until_consumed(kLongestRequest);
     return false;
   }
 

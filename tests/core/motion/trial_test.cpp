@@ -30,9 +30,6 @@ SlidingWindow window_of(const Mesh& mesh, std::size_t knots, const WindowOptions
   return window;
 }
 
-/// The first segment that a window of these knots still has.
-std::size_t oldest(const SlidingWindow& window) { return window.oldest_segment(); }
-
 class ATrial : public ::testing::TestWithParam<bool> {};
 
 TEST_P(ATrial, GivesTheBitsThatTheWindowItselfWouldGive) {
@@ -47,7 +44,7 @@ TEST_P(ATrial, GivesTheBitsThatTheWindowItselfWouldGive) {
     trial.window().append(waypoint(mesh, knots));
     const SlidingWindow longer = window_of(mesh, knots + 1, options, GetParam());
     ASSERT_EQ(trial.window().knots(), longer.knots());
-    for (std::size_t i = oldest(longer); i < longer.knots(); ++i) {
+    for (std::size_t i = longer.oldest_segment(); i < longer.knots(); ++i) {
       trial.window().segment(i, tried);
       longer.segment(i, expected);
       ASSERT_EQ(tried.left, expected.left);
@@ -65,7 +62,7 @@ double largest_ratio(const SlidingWindow& window, std::size_t first,
   const MotionLimits& limits = window.options().limits;
   double worst = 0;
   Segment segment(window.dimensions());
-  for (std::size_t i = std::max(first, oldest(window)); i + 1 < window.knots(); ++i) {
+  for (std::size_t i = std::max(first, window.oldest_segment()); i + 1 < window.knots(); ++i) {
     if (unchanged != nullptr && i + 1 < unchanged->knots()) {
       unchanged->segment(i, segment);
       if (!keeps_within(limits, nullptr, segment)) continue;
@@ -96,7 +93,7 @@ TEST(Trial, FindsTheLargestExcessThatTheChangeMakes) {
       ASSERT_EQ(of_all ? of_all->excess.ratio : 0, all) << seed;
       ASSERT_EQ(of_new ? of_new->excess.ratio : 0, only_new) << seed;
       if (!of_new) continue;
-      EXPECT_GE(of_new->time, window.time(std::max(first, oldest(trial.window()))));
+      EXPECT_GE(of_new->time, window.time(std::max(first, trial.window().oldest_segment())));
       EXPECT_LE(of_new->time, mesh.times[12]);
       EXPECT_EQ(of_new->excess.kind, LimitKind::velocity);
     }
@@ -117,7 +114,7 @@ TEST(Trial, LeavesTheWindowAsItIs) {
   (void)trial.exceeds_no_more(options.limits, 0, window);
   Segment a(2);
   Segment b(2);
-  for (std::size_t i = oldest(window); i < window.knots(); ++i) {
+  for (std::size_t i = window.oldest_segment(); i < window.knots(); ++i) {
     window.segment(i, a);
     same.segment(i, b);
     EXPECT_EQ(a.coefficients, b.coefficients);
