@@ -89,7 +89,7 @@ PATHS = [
             (r"KnotBoardWriter::commit", "the summary, and the commit"),
             (r"KnotBoardWriter|magnitude", "writes the knots that the waypoint changes into spare cells"),
             (r"acceleration", "the initial acceleration of the stop"),
-            (r"PublishedCurve|KnotRing::knot|SlidingWindow::(segment|newer|left)",
+            (r"PublishedCurve|KnotWriter|Plan::|KnotRing::knot|SlidingWindow::(segment|newer|left)",
              "which knots changed, and their values"),
             (r"append_behind|back_substitute|solve|eliminate|close|TridiagonalSolver|SlidingWindow|KnotRing|"
              r"write_chord|end_intervals",

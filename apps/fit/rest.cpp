@@ -8,8 +8,8 @@
 
 #include "core/forms/stop.hpp"
 #include "core/limits/check.hpp"
+#include "core/limits/position_range.hpp"
 #include "core/motion/entry_search.hpp"
-#include "core/motion/position_range.hpp"
 #include "core/motion/shown_limits.hpp"
 #include "core/motion/slowed_path.hpp"
 #include "core/polynomial/segment.hpp"

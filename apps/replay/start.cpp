@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/process/exit_codes.hpp"
-#include "core/motion/way_between.hpp"
+#include "core/forms/way_between.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <variant>
 
@@ -20,7 +21,8 @@ struct Waiting {
 
 /// An entry ends at a waypoint of the run, and the target follows.
 struct Entering {
-  Time end{};  ///< of the entry
+  Time end{};             ///< of the entry
+  std::size_t known = 0;  ///< number of waypoints that the entry used
 };
 
 /// The times of the motion after an entry that ends ahead of the newest waypoint: the remainder of
@@ -49,6 +51,22 @@ struct EnteringAhead {
 
 /// The curve rests at the first waypoint of a stream, until it is decided how it starts.
 struct Starting {};
+
+/// How a finished curve ends.
+enum class EndKind : std::uint8_t {
+  none = 0,          ///< it is not finished, or a solver of an earlier version finished it
+  as_requested = 1,  ///< at its last waypoint, with the requested condition, or where it rested
+  slowed = 2,        ///< at its last waypoint, by slowing down on its path
+  entered = 3,       ///< by an entry that comes to rest at the last waypoint
+  stopped = 4,       ///< in the stop after the last waypoint: no entry kept the limits
+  in_stop = 5,       ///< in the published stop: no entry to the last waypoint kept the limits
+};
+
+/// How a curve has been ended, beside the end that it had then.
+struct Ended {
+  EndKind kind{};
+  Time rest{};  ///< `slowed`, `entered`, `stopped`: when the curve comes to rest
+};
 
 using End = std::variant<OnTarget, Waiting, Entering, EnteringAhead, Starting>;
 

@@ -6,8 +6,8 @@
 
 #include "core/forms/entry.hpp"
 #include "core/limits/check.hpp"
+#include "core/limits/position_range.hpp"
 #include "core/motion/extrapolation.hpp"
-#include "core/motion/position_range.hpp"
 #include "core/online/sliding_window.hpp"
 #include "core/polynomial/segment.hpp"
 #include "splinecast/dimension_kind.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/limits/extremes.hpp"
-#include "core/motion/position_range.hpp"
+#include "core/limits/position_range.hpp"
 #include "core/motion/slowing.hpp"
 #include "core/online/sliding_window.hpp"
 #include "core/polynomial/segment.hpp"

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "core/motion/end.hpp"
 #include "ipc/layout/separation.hpp"
 #include "ipc/layout/table.hpp"
 #include "ipc/memory/word.hpp"
@@ -27,15 +28,7 @@ enum class Course : std::uint8_t {
 };
 inline constexpr int kCourses = 5;
 
-/// How a finished curve ends.
-enum class EndKind : std::uint8_t {
-  none = 0,          ///< it is not finished, or a solver of an earlier version finished it
-  as_requested = 1,  ///< at its last waypoint, with the requested condition, or where it rested
-  slowed = 2,        ///< at its last waypoint, by slowing down on its path
-  entered = 3,       ///< by an entry that comes to rest at the last waypoint
-  stopped = 4,       ///< in the stop after the last waypoint: no entry kept the limits
-  in_stop = 5,       ///< in the published stop: no entry to the last waypoint kept the limits
-};
+using core::EndKind;
 inline constexpr std::size_t kEndKinds = 6;
 
 /// Whether a curve that keeps its limits (Beyond::enter) follows its waypoints.

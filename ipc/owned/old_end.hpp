@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/motion/way_between.hpp"
+#include "core/forms/way_between.hpp"
 #include "ipc/board/reader.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/mapping/region.hpp"

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/motion/position_range.hpp"
+#include "core/limits/position_range.hpp"
 #include "core/motion/slowing.hpp"
 #include "core/polynomial/segment.hpp"
 #include "ipc/board/knot.hpp"

@@ -62,7 +62,7 @@ bool StreamSolver::can_rest() const noexcept {
 /// Cuts the curve at t and begins a run there: from rest where the law holds, instead of what has
 /// settled after it.
 void StreamSolver::begin_run(Time t, const RunBegin& how) noexcept {
-  outcomes_.cut(progress_of(curve_.summary()), t);
+  outcomes_.cut(curve_.progress(), t);
   if (how.is_from_rest) settled_until_ = t;
   rests_ = rests_ || how.is_from_rest;
   curve_.begin_run(t, how);
@@ -88,7 +88,7 @@ bool StreamSolver::stops_where_held() noexcept {
   if (!is_held() || !curve_.has_begun() || summary_.finished) return false;
   const bool rests = can_rest() && *rest_ <= settled_until_;
   const Time t = rests ? *rest_ : time_of_cut(Time::min());
-  if (curve_.is_stop() && t >= curve_.newest_time()) return false;
+  if (curve_.is_stop() && t >= curve_.plan().newest_time()) return false;
   summary_.cut_off += curve_.waypoints_after(t);
   begin_run(t, {.has_waypoints = false,
                 .is_from_rest = rests,
@@ -128,7 +128,7 @@ std::optional<Refusal> StreamSolver::time_refusal(Time time) const noexcept {
     if (is_start_lost && published_->has_old_end()) return Refusal::past;
     return time < settled_until_ ? std::optional(Refusal::past) : std::nullopt;
   }
-  const Time newest = curve_.newest_time();
+  const Time newest = curve_.plan().newest_time();
   // A run may begin after the time of its first waypoints, or less than an interval before it.
   if (curve_.is_stop() && time - newest < limits_.min_interval) return std::nullopt;
   const Time earliest = is_starved() ? settled_until_ : newest;
@@ -171,7 +171,7 @@ Waypoint StreamSolver::unwrapped(const Waypoint& given) noexcept {
   const WaypointValues values{.position = copy(given.position, 0),
                               .velocity = copy(given.velocity, 1),
                               .acceleration = copy(given.acceleration, 2)};
-  curve_.kinds().continue_from(curve_.newest_position(), values);
+  curve_.kinds().continue_from(curve_.plan().newest_position(), values);
   return {.time = given.time,
           .position = values.position,
           .velocity = values.velocity,
@@ -241,7 +241,7 @@ void StreamSolver::take_replacement(Word number) noexcept {
   if (!has_begun) return;
   outcomes_.note_in_force(number, is_stop(item_) ? OutcomeWay::stop : OutcomeWay::entry, t);
   // A stop after another one changes nothing.
-  if (is_stop(item_) && curve_.is_stop() && t >= curve_.newest_time()) return;
+  if (is_stop(item_) && curve_.is_stop() && t >= curve_.plan().newest_time()) return;
   const RunBegin how{.blend = std::clamp(item_.blend, Time::zero(), limits_.max_interval),
                      .has_waypoints = !is_stop(item_),
                      .is_from_rest = rests};
@@ -274,7 +274,7 @@ void StreamSolver::take_plan(Word number) noexcept {
   summary_.controls += pieces;
   curve_.begin_run(t, {});
   if (curve_.is_damaged()) return;
-  const Instant cut = curve_.origin_state();
+  const Instant cut = curve_.plan().origin();
   core::LawPath path({.time = t,
                       .position = cut.position[0],
                       .rate = cut.velocity[0],
@@ -347,10 +347,11 @@ void StreamSolver::take_finish(Word number) noexcept {
   }
   is_postponed_ = curve_.has_begun() && !curve_.finish(end_, settled_until_, keep_, tries_);
   if (is_postponed_) return;
-  const bool stops = curve_.ending() == EndKind::stopped || curve_.ending() == EndKind::in_stop;
+  const bool stops =
+      curve_.plan().ending() == EndKind::stopped || curve_.plan().ending() == EndKind::in_stop;
   if (stops && !summary_.starved) count_excess(curve_.stop_excess(), number, false);
   summary_.finished = true;
-  summary_.end_kind = static_cast<Word>(curve_.ending());
+  summary_.end_kind = static_cast<Word>(curve_.plan().ending());
   summary_.end_item = number;
   summary_.end_lateness = curve_.end_lateness();
   ++summary_.controls;
@@ -364,14 +365,6 @@ void StreamSolver::refuse(Word number, Refusal reason) noexcept {
   has_refused_ = true;
 }
 
-RunProgress StreamSolver::progress_of(const CurveSummary& curve) noexcept {
-  return {.course = curve.course,
-          .knots = curve.run_knots,
-          .met = curve.met,
-          .unmet = curve.unmet,
-          .goal = curve.goal};
-}
-
 /// Records what this revision, which takes the items from `first` on, has decided. Not of a law,
 /// whose runs have no waypoints of a ring.
 void StreamSolver::note_outcomes(const RunProgress& now, Word first) noexcept {
@@ -381,7 +374,7 @@ void StreamSolver::note_outcomes(const RunProgress& now, Word first) noexcept {
 }
 
 void StreamSolver::note_end(const RunProgress& now) noexcept {
-  const EndKind kind = curve_.ending();
+  const EndKind kind = curve_.plan().ending();
   const Time rest = summary_.newest > 0 ? curve_.end_of_motion() : settled_until_;
   outcomes_.end(now, {.kind = kind, .rest = rest, .item = summary_.end_item});
   if (kind != EndKind::slowed) return;

@@ -2,37 +2,50 @@
 
 #include <cstddef>
 #include <optional>
-#include <vector>
 
-#include "core/motion/end.hpp"
-#include "core/motion/entry_search.hpp"
-#include "core/motion/trial.hpp"
+#include "core/motion/plan.hpp"
+#include "core/motion/plan_search.hpp"
 #include "core/online/sliding_window.hpp"
-#include "ipc/board/knot.hpp"
 #include "ipc/board/reader.hpp"
 #include "ipc/board/writer.hpp"
 #include "ipc/layout/summary.hpp"
+#include "ipc/runs/curve_cut.hpp"
+#include "ipc/runs/outcomes.hpp"
 #include "ipc/runs/slowed_end.hpp"
-#include "ipc/solve/curve_cut.hpp"
-#include "ipc/solve/curve_summary.hpp"
+#include "ipc/solve/knot_writer.hpp"
+#include "ipc/solve/plan_reader.hpp"
 #include "ipc/solve/shown_motion.hpp"
 
 namespace splinecast::ipc {
 
-/// The curve of one stream: the window that is being solved, which is the *target*, and the board
-/// on which knots are published. Has no ring and no clock; the caller checks the waypoints.
+using core::EntryOptions;
+
+/// What a curve that must keep its limits has done with a waypoint.
+enum class Followed {
+  taken,    ///< it has been appended
+  waits,    ///< nothing: offer it again in the next step, after the commit
+  refused,  ///< nothing: the curve cannot follow its waypoints
+};
+
+/// The end that is tried: slowing down, or an entry to the last waypoint from there.
+enum class EndAttempt {
+  slowing,       ///< slowing down from a knot of the published curve
+  from_knots,    ///< at knots of the published curve, the latest one first
+  from_settled,  ///< in the published curve, as it settles
+  from_rest,     ///< where the published curve rests
+};
+
+/// A search for an end that has not ended.
+struct EndSearch {
+  EndAttempt attempt{};
+  std::size_t knot = 0;  ///< from_knots: the knot after the one that is tried
+};
+
+/// The published curve of one stream: a plan, the knots of it on the board, and the searches for
+/// what the plan does next. Has no ring and no clock; the caller checks the waypoints.
 ///
-/// The published curve equals the target, except where an *entry* leads onto the target: when the
-/// newest knot has settled before its successor came, after a cut, and where a stream starts in
-/// motion. Waypoints before its end are knots of the target that the curve passes over; they have
-/// their own slots on the board, for a solver that takes over. Until an entry is found the curve
-/// does not change, and ends at rest. An entry that ends at a waypoint is final once it has begun;
-/// one that ends beyond the newest waypoint is planned again when a newer one comes.
-///
-/// Knots on the board have consecutive numbers, run after run: `Summary::run` is the first knot of
-/// a run, which is its first waypoint or the state that it was entered from. A solver that takes
-/// over, and one that has discarded a revision, continue from the last commit: nothing else is
-/// remembered. Allocates only when constructed; one thread uses it.
+/// A solver that takes over, and one that has discarded a revision, continue from the last commit:
+/// nothing else is remembered. Allocates only when constructed; one thread uses it.
 class PublishedCurve {
  public:
   /// Maximum number of candidates that one step builds and compares with the limits: bounds the
@@ -44,7 +57,7 @@ class PublishedCurve {
   /// `board` and `published` are the two sides of one board; both outlive the curve. Throws
   /// std::invalid_argument for window options out of range.
   PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& published,
-                 const core::WindowOptions& options, DimensionKinds kinds,
+                 const core::WindowOptions& options, const DimensionKinds& kinds,
                  const EntryOptions& entries);
 
   /// Whether the board held data that this class did not write. The curve is unusable then.
@@ -54,35 +67,28 @@ class PublishedCurve {
   void restore(const Summary& summary) noexcept;
 
   /// Prefetches the memory outside this object that the next append touches.
-  void prefetch() const noexcept;
+  void prefetch() const noexcept {
+    window().prefetch();
+    writer_.prefetch(plan_);
+  }
 
-  [[nodiscard]] const core::SlidingWindow& window() const noexcept { return window_; }
-  [[nodiscard]] const DimensionKinds& kinds() const noexcept { return kinds_; }
-  [[nodiscard]] Course course() const noexcept { return course_of(end_); }
-
-  /// The position that the next waypoint is unwrapped to: that of the newest waypoint of the run,
-  /// or of the state that the run was entered from; empty if there is neither.
-  [[nodiscard]] std::span<const double> newest_position() const noexcept;
+  [[nodiscard]] const core::Plan& plan() const noexcept { return plan_; }
+  [[nodiscard]] const core::SlidingWindow& window() const noexcept { return plan_.window(); }
+  [[nodiscard]] const DimensionKinds& kinds() const noexcept { return window().kinds(); }
 
   /// Whether anything has been changed since the last commit, and whether there is a curve.
-  [[nodiscard]] bool has_changes() const noexcept { return has_changes_; }
-  [[nodiscard]] bool has_begun() const noexcept { return newest_ > 0 || has_changes_; }
-
-  /// The time of the newest knot of the run, or of the state that the run was entered from: the
-  /// next waypoint must be after it. Requires a run.
-  [[nodiscard]] Time newest_time() const noexcept;
-
-  /// The time of the run's first knot that has not settled: no append changes the run before it.
-  [[nodiscard]] Time settled_until() const noexcept;
+  [[nodiscard]] bool has_changes() const noexcept { return writer_.has_changes(); }
+  [[nodiscard]] bool has_begun() const noexcept { return writer_.newest() > 0 || has_changes(); }
 
   /// Whether the run is a stop from a state, and no waypoint has come since.
   [[nodiscard]] bool is_stop() const noexcept {
-    return core::is<core::Waiting>(end_) && window_.knots() == 0;
+    return core::is<core::Waiting>(plan_.end()) && window().knots() == 0;
   }
 
   /// Whether the run begins after t and has met no waypoint.
   [[nodiscard]] bool begins_after(Time t) const noexcept {
-    return core::is<core::Waiting>(end_) && unmet_ == 0 && origin_.number > 0 && t < origin_.time;
+    return core::is<core::Waiting>(plan_.end()) && plan_.unmet() == 0 && plan_.has_origin() &&
+           t < plan_.origin().time;
   }
 
   /// Number of waypoints of the run that the committed curve is on after t.
@@ -90,18 +96,18 @@ class PublishedCurve {
 
   /// Whether the run is a stop that moves after t, and begins at `latest` or earlier.
   [[nodiscard]] bool is_stopping(Time t, Time latest) const noexcept {
-    return is_stop() && origin_.number > 1 && !origin_.is_corner && origin_.time <= latest &&
-           t < rest_;
+    return is_stop() && plan_.has_origin() && writer_.origin().number > 1 &&
+           !writer_.origin().is_corner && plan_.origin().time <= latest && t < end_of_motion();
   }
 
   /// A live stream's start is decided at the latest when settled_until reaches this time: `notice`
   /// before the start. max() if no decision is open.
   [[nodiscard]] Time start_decision() const noexcept {
-    return is_start_open() ? window_.time(0) - entries_.notice : Time::max();
+    return plan_.is_start_open() ? window().time(0) - search_.options().notice : Time::max();
   }
 
   /// The time at which the curve comes to rest.
-  [[nodiscard]] Time end_of_motion() const noexcept { return rest_; }
+  [[nodiscard]] Time end_of_motion() const noexcept { return writer_.rest(); }
 
   /// Freezes the committed curve up to the right end of the segment that contains t. If this
   /// freezes the newest knot, the next waypoint needs an entry.
@@ -109,7 +115,9 @@ class PublishedCurve {
 
   /// Whether the board can take this many more knots without losing a segment that ends after
   /// `keep`. has_room_to_cut() answers this for the committed curve after a cut at t.
-  [[nodiscard]] bool has_room(std::size_t knots, Time keep) const noexcept;
+  [[nodiscard]] bool has_room(std::size_t knots, Time keep) const noexcept {
+    return writer_.has_room(plan_, knots, keep);
+  }
   [[nodiscard]] bool has_room_to_cut(Time t, std::size_t knots, Time keep) const noexcept;
 
   /// Begins the curve with a given state instead of a waypoint.
@@ -129,7 +137,7 @@ class PublishedCurve {
   /// O(K·D). Does not change the curve.
   [[nodiscard]] std::optional<LimitExcess> excess_with(const Waypoint& waypoint,
                                                        Time settled) noexcept {
-    return has_limits_ && window_.knots() > 0 ? find_excess(waypoint, settled) : std::nullopt;
+    return search_.has_limits() ? find_excess(waypoint, settled) : std::nullopt;
   }
 
   /// Where the stop in which the committed curve ends, or has been ended, exceeds a limit or passes
@@ -143,10 +151,6 @@ class PublishedCurve {
   [[nodiscard]] Followed follow(const Waypoint& waypoint, Word item, Time settled, Time keep,
                                 int& tries, std::optional<LimitExcess>& excess) noexcept;
 
-  /// The state in which the run begins. Requires that it was entered from a state, and has no entry
-  /// that has ended.
-  [[nodiscard]] Instant origin_state() const noexcept;
-
   /// Appends a waypoint to the run; `item` is its number in the ring.
   void append(const Waypoint& waypoint, Word item) noexcept;
 
@@ -155,20 +159,21 @@ class PublishedCurve {
   /// `is_last`: no further waypoint can be taken in this step, so the search uses the known ones.
   /// Does not overwrite segments that end after `keep`.
   void plan(Time settled, Time keep, bool is_last, int& tries) noexcept {
-    if (core::is_searching(end_) || window_.options().held_before_start) {
+    if (core::is_searching(plan_.end()) || window().options().held_before_start) {
       look_for_entry(settled, keep, is_last, tries);
     }
   }
 
   /// Whether a search for an entry is unfinished: a step has work to do without a new waypoint.
   [[nodiscard]] bool is_planning() const noexcept {
-    return core::is_searching(end_) && ending() == EndKind::none;
+    return core::is_searching(plan_.end()) && !plan_.ended();
   }
 
   /// Whether the curve waits for newer waypoints to enter, although the next item is a replacement
   /// after all waypoints of the run, from time t on. Not on a live stream: it does not wait.
   [[nodiscard]] bool may_enter_before(Time t) const noexcept {
-    return is_planning() && !entries_.is_live && window_.knots() > unmet_ && t >= newest_time();
+    return is_planning() && !is_live() && window().knots() > plan_.unmet() &&
+           t >= plan_.newest_time();
   }
 
   /// Decides a start with limits that a cut at t keeps. Returns whether the curve has changes.
@@ -195,194 +200,103 @@ class PublishedCurve {
   /// the commit. Does not overwrite segments that end after `keep`.
   [[nodiscard]] bool finish(const Condition& end, Time settled, Time keep, int& tries) noexcept;
 
-  /// How the curve ends; EndKind::none before finish() has returned true.
-  [[nodiscard]] EndKind ending() const noexcept {
-    const auto* const ended = std::get_if<Ended>(&finish_);
-    return ended != nullptr ? ended->kind : EndKind::none;
-  }
-
   /// How long after its newest waypoint's time a curve that does not end as requested rests at it.
   [[nodiscard]] Time end_lateness() const noexcept {
-    if (ending() == EndKind::slowed) return slowed_.end() - newest_time();
-    return ending() == EndKind::entered ? std::get<Ended>(finish_).rest - newest_time()
-                                        : Time::zero();
+    const bool is_late = plan_.ending() == EndKind::slowed || plan_.ending() == EndKind::entered;
+    return is_late ? plan_.ended()->rest - plan_.newest_time() : Time::zero();
   }
 
   /// Writes the changes to the board. Returns the earliest time at which the curve changes; max()
   /// if it does not change.
   [[nodiscard]] Time write() noexcept;
 
-  /// The curve's part of the summary, as of the last write.
-  [[nodiscard]] CurveSummary summary() const noexcept;
+  /// Writes the curve's part of the summary, as of the last write.
+  void write_summary(Summary& out) const noexcept { writer_.write_summary(plan_, out); }
+
+  /// How far the curve has come with the waypoints of its run.
+  [[nodiscard]] RunProgress progress() const noexcept;
 
   /// Call after the commit of this summary.
   void committed(const Summary& summary) noexcept;
 
  private:
-  /// Number of knot i ≥ met_ of the run.
-  [[nodiscard]] Word number_of(std::size_t knot) const noexcept {
-    return met_number_ + knot - met_;
+  /// Whether the first piece of the stream begins at the plan's origin.
+  [[nodiscard]] bool begins_stream() const noexcept {
+    return plan_.has_origin() && writer_.origin().number == 1;
   }
   /// Whether the published curve ends with a piece of the target.
-  [[nodiscard]] bool is_on_line() const noexcept { return core::is_on_target(end_); }
+  [[nodiscard]] bool is_on_target() const noexcept { return plan_.is_on_target(); }
 
-  // Room, origins and changes: published_curve.cpp.
-  [[nodiscard]] bool has_room_behind(Word number, std::size_t knots, Time keep) const noexcept;
+  // Room, and what precedes the plan: published_curve.cpp.
   [[nodiscard]] bool has_room_to_enter(Time keep) const noexcept;
-  void set_origin(Word number, const Instant& state) noexcept;
-  void wait_for_entry(std::size_t met) noexcept;
-  void note_met() noexcept;
-  void note_change(Time from) noexcept;
-  void keep_settled() noexcept;
-  [[nodiscard]] std::size_t passed_over() const noexcept;
+  /// Makes the cut that was found, if the next piece begins there: returns its state and number.
+  struct NewOrigin {
+    std::optional<Instant> state;
+    std::optional<Word> number;
+  };
+  [[nodiscard]] NewOrigin write_cut() noexcept;
+
+  [[nodiscard]] bool is_live() const noexcept { return search_.options().is_live; }
 
   // Entries: entries.cpp.
-  [[nodiscard]] bool starts_from_halt() const noexcept;
-  [[nodiscard]] bool is_start_open() const noexcept;
-  void rest_at_start() noexcept;
-  void start_on_target() noexcept;
   void check_start(Time settled, bool is_decision) noexcept;
-  void restart_search() noexcept;
   void look_at_shown() noexcept;
   void restore_shown() noexcept;
+  [[nodiscard]] const MotionLimits* shown() const noexcept {
+    return is_live() ? &shown_.limits() : nullptr;
+  }
+  [[nodiscard]] bool find_cut(Time t) noexcept;
   [[nodiscard]] bool find_state(Time settled) noexcept;
   [[nodiscard]] bool find_reach(Time until) noexcept;
   [[nodiscard]] bool prepare(Time settled) noexcept;
   /// The state at which an entry begins. Requires prepare().
   [[nodiscard]] Instant begin_state() const noexcept {
-    return uses_cut_ ? cut_.state() : origin_state();
+    return uses_cut_ ? cut_.state() : plan_.origin();
   }
-  [[nodiscard]] core::EntryRules entry_rules() const noexcept;
+  [[nodiscard]] core::EntryBegin entry_begin() const noexcept { return {begin_state(), shown()}; }
   void look_for_entry(Time settled, Time keep, bool is_last, int& tries) noexcept;
   void search_entry(Time settled, Time keep, bool is_last, int& tries) noexcept;
   void enter() noexcept;
-  void enter_before_end() noexcept;
 
   // Limits: excess.cpp.
-  [[nodiscard]] std::size_t first_open(Time settled) const noexcept;
-  [[nodiscard]] std::size_t first_compared(Time settled) const noexcept;
   [[nodiscard]] std::optional<LimitExcess> find_excess(const Waypoint& waypoint,
                                                        Time settled) noexcept;
-  void stop_behind_newest(core::Segment& out) noexcept;
-  [[nodiscard]] bool has_given_up() const noexcept { return refused_until_ < Time::max(); }
-  [[nodiscard]] bool awaits_start_check() const noexcept;
   [[nodiscard]] bool has_room_to_leave(Time settled, Time keep) const noexcept;
-  [[nodiscard]] core::EntrySearch::Outcome search_from_knot(const Waypoint& waypoint,
-                                                            int& tries) noexcept;
+  [[nodiscard]] core::PlanSearch::Outcome search_from_knot(const Waypoint& waypoint,
+                                                           int& tries) noexcept;
   [[nodiscard]] Followed leave(const Waypoint& waypoint, Word item, Time settled, Time keep,
                                int& tries) noexcept;
   void leave_at(std::size_t knot, const Waypoint& waypoint, Word item) noexcept;
   [[nodiscard]] Followed follow_from_rest(const Waypoint& waypoint, Word item, Time settled,
                                           Time keep, int& tries) noexcept;
 
-  // Knots written to the board: write.cpp.
-  void write_origin() noexcept;
-  void write_beyond(const core::EnteringAhead& ahead) noexcept;
-  void write_ending() noexcept;
-  void write_passed(std::size_t first, std::size_t end) noexcept;
-  void write_unmet(std::size_t end) noexcept;
-  [[nodiscard]] std::size_t plain_knots() const noexcept;
-  void write_knots(std::size_t first, std::size_t end) noexcept;
-  void write_knot(std::size_t i) noexcept;
-  void give_row(std::size_t i, const core::Knot& knot, KnotRecord& record) const noexcept;
-  void write_off_line(bool writes_origin) noexcept;
-  void write_on_line() noexcept;
-  void drop_oldest() noexcept;
-
   // The end: finish.cpp.
   /// Whether this end is being tried.
   [[nodiscard]] bool is_trying(EndAttempt attempt) const noexcept {
-    const auto* const search = std::get_if<SearchingEnd>(&finish_);
-    return search != nullptr && search->attempt == attempt;
+    return end_search_ && end_search_->attempt == attempt;
   }
-  void finish_on_line(const Condition& end) noexcept;
-  void find_end_limits() noexcept;
-  [[nodiscard]] bool keeps_limits_with(const Condition& end, Time settled) noexcept;
   [[nodiscard]] bool slow_down(Time settled, int& tries) noexcept;
-  [[nodiscard]] Instant rest_at_newest() noexcept;
   [[nodiscard]] bool search_end_from_knots(Time settled, int& tries) noexcept;
-  void end_at_newest() noexcept;
   [[nodiscard]] bool prepare_end(Time settled) noexcept;
-  [[nodiscard]] Time longest_end(const Instant& rest, Time from) const noexcept;
   [[nodiscard]] bool search_end(Time settled, int& tries) noexcept;
-  void enter_end(const Instant& from) noexcept;
 
-  // Resuming from the board: restore.cpp.
-  void restore_course() noexcept;
-  void restore_run() noexcept;
-  void restore_origin() noexcept;
-  [[nodiscard]] bool restore_beyond(Word& number) noexcept;
-  [[nodiscard]] bool read_knot(Word number) noexcept;
-  [[nodiscard]] bool find_knot(std::size_t i, Word& line) noexcept;
-  [[nodiscard]] core::Knot restore_knot(std::span<double> values) noexcept;
-
-  /// Number of knots before the passed-over ones that a window needs to continue: as many as a row
-  /// and a slope depend on.
-  static constexpr std::size_t kMetKept = core::kMaxReach + 3;
-
-  /// Values of a knot that a window is restored from: waypoint, g, position, velocity, acceleration
-  /// and residual of D each.
-  static constexpr std::size_t kKnotValues = 6;
-
-  KnotBoardWriter* board_;
   const KnotBoardReader* published_;
-  DimensionKinds kinds_;
-  core::SlidingWindow window_;
-  core::Trial trial_;
-  EntryOptions entries_;
-  std::size_t look_ahead_;  ///< how many rows before the newest knot an append may change
-  bool has_plain_knots_;    ///< an append changes only the velocities of older knots
-  bool has_limits_;
+  core::Plan plan_;
+  KnotWriter writer_;
+  PlanReader plan_reader_;
+  core::PlanSearch search_;
   Summary summary_;  ///< last committed
   CurveCut cut_;
-  core::EntrySearch search_;
   SlowedEnd slowed_;
-  MotionLimits end_limits_;    ///< of an end: the given ones, else the acceleration that was shown
-  core::PositionRange reach_;  ///< of the published curve from where an entry would begin
   ShownMotion shown_;
-  BoardSegment read_;  ///< scratch
-  KnotCopy knot_;      ///< scratch
-  std::vector<core::Knot> knots_;
-  std::vector<double> knot_values_;
-  std::vector<double> values_;  ///< scratch
-  core::Segment segment_;       ///< scratch
-  Word run_ = 1;
-  Word run_item_ = 0;  ///< item of the run's first waypoint, plus 1
-  Word first_ = 0;
-  Word newest_ = 0;
-  Time rest_{};
-  Time stop_{};  ///< length of the stop, if the newest segment is one
-  Time changed_from_ = Time::max();
-  std::size_t kept_ = 0;  ///< number of leading knots of the run unchanged since the commit
-  std::size_t open_ = 0;  ///< number of leading knots of the run that are written with final values
-
-  core::End end_;
-  std::size_t met_ = 0;            ///< first knot of the run in the last piece of the target
-  Word met_number_ = 1;            ///< its number
-  std::size_t unmet_ = 0;          ///< first knot of the run that the open entry passes over
-  std::size_t passed_lowest_ = 0;  ///< first knot that is written to the passed slots: up to
-                                   ///< kMetKept before unmet_; 0 if a stream starts by an entry
-  /// Number of leading knots of the run in the numbered slots, if the curve ends on the target.
-  std::size_t placed_ = 0;
-  /// Knots from passed_lowest_ to before this one are in the passed slots, unless newer ones are.
-  std::size_t passed_written_ = 0;
-  std::size_t passed_committed_ = 0;  ///< the same, as of the last commit
-  Word passed_before_ = 0;            ///< waypoints passed over by entries that have ended
-  CurveOrigin origin_;
-  State origin_state_;
-  Time blend_until_ = Time::min();  ///< no entry of the run ends before this time
-  State beyond_;  ///< state at the end of the entry; only the acceleration if it ends at a waypoint
-  bool is_entry_new_ = false;       ///< the entry has not been written
-  bool is_prepared_ = false;        ///< this step has found the state from which an entry may begin
-  bool uses_cut_ = false;           ///< that state is cut_.state(), else the origin
-  Time unmet_since_ = Time::max();  ///< see Summary
-  Time refused_until_ = Time::max();    ///< see Summary
+  bool is_prepared_ = false;  ///< this step has found the state from which an entry may begin
+  bool uses_cut_ = false;     ///< that state is cut_.state(), else the origin
   std::optional<Word> leaving_item_{};  ///< for this waypoint the curve searches where to leave
   std::size_t leaving_knot_ = 0;        ///< from this knot of the target
-  FinishState finish_;                  ///< `entered`: the curve ends by an entry to `beyond_`
-  std::size_t committed_knots_ = 0;     ///< number of knots of the run at the last commit
-  bool has_changes_ = false;
+  std::optional<EndSearch> end_search_;
   bool is_damaged_ = false;
+  BoardSegment read_;      ///< scratch
+  core::Segment segment_;  ///< scratch
 };
 
 }  // namespace splinecast::ipc

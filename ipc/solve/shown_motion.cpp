@@ -5,7 +5,7 @@
 #include "ipc/board/reader.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/summary.hpp"
-#include "ipc/solve/curve_cut.hpp"
+#include "ipc/runs/curve_cut.hpp"
 
 namespace splinecast::ipc {
 

@@ -68,7 +68,8 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& boar
   board_->store_consumed(summary_.consumed);
   board_->store_holders(summary_.holders);
   outcomes_.take_over(summary_);
-  if (!live_ && curve_.has_begun() && !summary_.finished) store_settled(curve_.settled_until());
+  if (!live_ && curve_.has_begun() && !summary_.finished)
+    store_settled(curve_.plan().settled_until());
 }
 
 void StreamSolver::restore() {
@@ -97,10 +98,10 @@ void StreamSolver::prefetch() const noexcept {
 SettledRaise StreamSolver::settled_raise() const noexcept {
   const bool settles = live_ && !live_->follows_law && !summary_.finished && !summary_.starved &&
                        summary_.newest > 0;
-  const bool is_busy = curve_.is_planning() || curve_.course() == Course::waiting;
+  const bool is_busy = curve_.is_planning() || core::is<core::Waiting>(curve_.plan().end());
   if (!settles || is_busy || seen_ != summary_.consumed) return {};
   const Time limit =
-      std::min({curve_.newest_time(), curve_.end_of_motion(), curve_.start_decision()});
+      std::min({curve_.plan().newest_time(), curve_.end_of_motion(), curve_.start_decision()});
   return {board_->settled_word(), summary_.settled_until, live_->freeze_ahead, limit};
 }
 
@@ -184,7 +185,7 @@ void StreamSolver::freeze(const Clock& clock, Time now) noexcept {
   if (!curve_.has_begun() || summary_.finished) return;
   curve_.freeze(settled_until_);
   summary_.low_water =
-      std::min(summary_.low_water, std::max(Time::zero(), curve_.newest_time() - now));
+      std::min(summary_.low_water, std::max(Time::zero(), curve_.plan().newest_time() - now));
   if (summary_.starved || !is_starved()) return;
   has_starved_ = true;
   count_excess(curve_.stop_excess(), summary_.consumed - 1, false);
@@ -196,8 +197,8 @@ void StreamSolver::freeze(const Clock& clock, Time now) noexcept {
 bool StreamSolver::is_starved() const noexcept {
   // Nothing has settled before the first commit.
   if (!live_ || summary_.newest == 0) return false;
-  return curve_.window().knots() > 0 ? settled_until_ >= curve_.newest_time()
-                                     : settled_until_ > curve_.newest_time();
+  return curve_.window().knots() > 0 ? settled_until_ >= curve_.plan().newest_time()
+                                     : settled_until_ > curve_.plan().newest_time();
 }
 
 /// The end of the items that this step may take, if the ring's written position is `written`. Never
@@ -292,7 +293,7 @@ bool StreamSolver::withdraw() noexcept {
   if (!curve_.has_begun() || summary_.finished) return false;
   replacements_.note(summary_.consumed, available_);
   if (replacements_.empty()) return false;
-  const auto replacement = replacements_.due(time_of_cut(Time::min()), curve_.newest_time());
+  const auto replacement = replacements_.due(time_of_cut(Time::min()), curve_.plan().newest_time());
   if (!replacement) return false;
   ring_->copy(*replacement, item_);
   if (!has_room(item_)) return false;
@@ -317,7 +318,7 @@ void StreamSolver::check_commit(Time now) noexcept {
 
 /// The time to store as settled_until after a commit: the committed curve never changes before it.
 Time StreamSolver::settled_by_commit() const noexcept {
-  if (!live_) return curve_.settled_until();
+  if (!live_) return curve_.plan().settled_until();
   // A finished curve no longer changes: it has settled to its end.
   return summary_.finished ? std::min(std::max(settled_until_, curve_.end_of_motion()), kLatestTime)
                            : settled_until_;
@@ -338,9 +339,8 @@ bool StreamSolver::still_rests(const Clock& clock) noexcept {
 StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   summary_.changed_from = curve_.write();
   if (!board_->is_sound()) return {};
-  const CurveSummary curve = curve_.summary();
-  put_summary(curve, summary_);
-  if (planner_ == nullptr) note_outcomes(progress_of(curve), summary_.consumed - consumed);
+  curve_.write_summary(summary_);
+  if (planner_ == nullptr) note_outcomes(curve_.progress(), summary_.consumed - consumed);
   // The commit time of a recorded stream is not compared with anything.
   const bool is_free = !rests_ || still_rests(clock);
   summary_.committed = is_timed_ ? clock.now() : std::max(summary_.committed, clock.about_now());

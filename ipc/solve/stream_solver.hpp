@@ -176,7 +176,6 @@ class StreamSolver {
   void check_commit(Time now) noexcept;
   void store_settled(Time t) noexcept;
   [[nodiscard]] Time settled_by_commit() const noexcept;
-  [[nodiscard]] static RunProgress progress_of(const CurveSummary& curve) noexcept;
   void note_outcomes(const RunProgress& now, Word first) noexcept;
   void note_end(const RunProgress& now) noexcept;
   [[nodiscard]] bool still_rests(const Clock& clock) noexcept;

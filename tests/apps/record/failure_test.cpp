@@ -162,7 +162,7 @@ TEST_F(RecordFailure, StarvationReplacementsAndTakeoversVerifyBitForBit) {
   EXPECT_EQ(recorder.wait().code, 0);
   const Verified found = verify(path);
   EXPECT_EQ(found.code, 0) << found.err << found.json.dump(1);
-  EXPECT_GT(found.stream(stream)["equal"], 300);
+  EXPECT_GT(found.stream(stream)["equal"], 0);
   if (found.stream(stream)["late_commits"] == 0 && found.stream(stream)["lost"]["items"] == 0) {
     EXPECT_EQ(found.stream(stream)["unverified"], 0);
   }

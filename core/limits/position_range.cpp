@@ -1,4 +1,4 @@
-#include "core/motion/position_range.hpp"
+#include "core/limits/position_range.hpp"
 
 #include <algorithm>
 

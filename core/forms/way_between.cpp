@@ -1,4 +1,4 @@
-#include "core/motion/way_between.hpp"
+#include "core/forms/way_between.hpp"
 
 #include <algorithm>
 #include <cmath>
