@@ -111,7 +111,8 @@ std::optional<Time> EntrySearch::next_duration(Time from, Time to_newest, bool t
   }
   shortest = std::max(shortest, to_newest);
   const double least = std::max(to_seconds(shortest), duration_);
-  const Time longer = from_seconds(least * kGrowth);
+  // Below 10 ns the factor alone would not change a duration.
+  const Time longer = std::max(from_seconds(least * kGrowth), from_seconds(least) + Time(1));
   const Time next = shortest < kLongest ? std::min(longer, kLongest) : longer;
   const bool comes_first =
       former_end_ && *former_end_ - from > from_seconds(least) && *former_end_ - from < next;

@@ -70,8 +70,9 @@ inline constexpr std::size_t kStartFades = 3;
 ///
 /// The search can be interrupted after any candidate; it does not try a rejected one again until
 /// `restart`. A candidate that needs a mean acceleration or velocity above its limit cannot pass:
-/// it costs O(D) and does not count as tried. There are at most K + 2 knots and 170 durations. Only
-/// the constructor allocates. Not thread-safe: one thread uses it.
+/// it costs O(D) and does not count as tried. There are at most K + 2 knots and 450 durations, 170
+/// from a shortest entry of 1 ms on. Only the constructor allocates. Not thread-safe: one thread
+/// uses it.
 class EntrySearch {
  public:
   static constexpr Time kLongest{3'000'000'000};

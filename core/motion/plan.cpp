@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/forms/stop.hpp"
 #include "core/limits/limit_of.hpp"
 
 namespace splinecast::core {
@@ -34,6 +35,15 @@ Time Plan::settled_until() const noexcept {
   const std::size_t knots = window_.knots();
   if (knots == 0 || !is_on_target()) return origin_.value_or(Time{});
   return window_.time(std::min(window_.settled_segments(), knots - 1));
+}
+
+Time Plan::stop_after_entry(const EnteringAhead& ahead) const noexcept {
+  const AfterEntry& after = ahead.after;
+  const Time length = after.stop_length();
+  if (length <= after.rest - after.stop_begin()) return length;
+  return std::max(length, least_stop_time(window_.limits_at_largest_rate(), window_.kinds(),
+                                          {after.end, entry_end_.position(), entry_end_.velocity(),
+                                           entry_end_.acceleration()}));
 }
 
 bool Plan::starts_from_halt() const noexcept {
@@ -70,6 +80,22 @@ void Plan::restore(const PlanState& state, std::span<const Knot> knots) noexcept
   const auto* const ahead = std::get_if<EnteringAhead>(&end_);
   const std::size_t used = ahead != nullptr ? ahead->known : unmet_;
   set_searching(!has_given_up() && window_.knots() > used);
+}
+
+void Plan::copy_from(const Plan& other, std::span<Knot> scratch) noexcept {
+  window_.copy_from(other.window_, scratch);
+  counts_unmet_ = other.counts_unmet_;
+  end_ = other.end_;
+  ended_ = other.ended_;
+  origin_ = other.origin_;
+  origin_state_ = other.origin_state_;
+  entry_end_ = other.entry_end_;
+  met_ = other.met_;
+  unmet_ = other.unmet_;
+  passed_before_ = other.passed_before_;
+  blend_until_ = other.blend_until_;
+  unmet_since_ = other.unmet_since_;
+  refused_until_ = other.refused_until_;
 }
 
 void Plan::set_origin(const Instant& state) noexcept {

@@ -78,6 +78,10 @@ class Plan {
   /// The state at the end of an entry. Of an entry that ends at a waypoint only the acceleration.
   [[nodiscard]] const State& entry_end() const noexcept { return entry_end_; }
 
+  /// The length of the stop after an entry that ends ahead of the newest waypoint. The motion at
+  /// the end of the former stop may need longer than the remainder of that.
+  [[nodiscard]] Time stop_after_entry(const EnteringAhead& ahead) const noexcept;
+
   /// How the curve has been ended; nothing if it continues.
   [[nodiscard]] const std::optional<Ended>& ended() const noexcept { return ended_; }
   [[nodiscard]] EndKind ending() const noexcept { return ended_ ? ended_->kind : EndKind::none; }
@@ -109,6 +113,10 @@ class Plan {
 
   /// Continues from a state, and from knots of the run's window: `knots` as SlidingWindow::restore.
   void restore(const PlanState& state, std::span<const Knot> knots) noexcept;
+
+  /// Continues from another plan with the same options, which has not been ended on its target.
+  /// `scratch`: window().knots_to_restore() knots. O(K·D).
+  void copy_from(const Plan& other, std::span<Knot> scratch) noexcept;
 
   /// Begins the first run with a state instead of a waypoint.
   void begin(const Instant& state) noexcept;

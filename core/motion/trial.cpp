@@ -20,18 +20,6 @@ Trial::Trial(std::size_t dimensions, const WindowOptions& options)
       unchanged_(dimensions),
       values_(dimensions) {}
 
-void Trial::begin(const SlidingWindow& window) noexcept {
-  const std::size_t first = window.first_to_restore();
-  for (std::size_t i = first; i < window.knots(); ++i) knots_[i - first] = window.knot(i);
-  const auto knots = std::span(knots_).first(window.knots() - first);
-  if (window.is_later_run()) {
-    window_.restore_run(first, knots);
-  } else {
-    window_.restore(first, knots);
-  }
-  window_.freeze_knots(window.frozen_knots());
-}
-
 std::optional<TimedExcess> Trial::worst_excess(std::size_t first,
                                                const SlidingWindow* unchanged) noexcept {
   const MotionLimits& limits = window_.options().limits;

@@ -27,7 +27,7 @@ class Trial {
   Trial(std::size_t dimensions, const WindowOptions& options);
 
   /// Makes the trial a copy of a window. O(K·D).
-  void begin(const SlidingWindow& window) noexcept;
+  void begin(const SlidingWindow& window) noexcept { window_.copy_from(window, knots_); }
 
   /// The copy.
   [[nodiscard]] SlidingWindow& window() noexcept { return window_; }

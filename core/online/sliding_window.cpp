@@ -267,4 +267,16 @@ void SlidingWindow::restore_run(std::size_t first, std::span<const Knot> knots) 
   }
 }
 
+void SlidingWindow::copy_from(const SlidingWindow& other, std::span<Knot> scratch) noexcept {
+  const std::size_t first = other.first_to_restore();
+  const auto knots = scratch.first(other.knots() - first);
+  for (std::size_t i = 0; i < knots.size(); ++i) knots[i] = other.knot(first + i);
+  if (other.is_later_run()) {
+    restore_run(first, knots);
+  } else {
+    restore(first, knots);
+  }
+  freeze_knots(other.frozen_knots());
+}
+
 }  // namespace splinecast::core

@@ -197,6 +197,10 @@ class SlidingWindow {
   /// The same for a later run.
   void restore_run(std::size_t first, std::span<const Knot> knots) noexcept;
 
+  /// Continues from another window with the same options, whose stream is not finished. `scratch`:
+  /// knots_to_restore() knots. O(K·D).
+  void copy_from(const SlidingWindow& other, std::span<Knot> scratch) noexcept;
+
  private:
   static constexpr std::size_t kKnotsThatShapeTheStart = 3;
 

@@ -107,7 +107,7 @@ def run(options):
     """Starts the controller, then follows the policy."""
     names = [f"q{j + 1}" for j in range(JOINTS)]
     with splinecast.Producer(options.stream, names=names, units="rad") as arm:
-        if not arm.wait_for_solver(10):
+        if not arm.wait_for_solver(60):
             sys.exit("no solver")
         begin = time.monotonic() + 0.2
         arm.append(begin, HOME)  # the stream begins at rest

@@ -78,14 +78,7 @@ void KnotWriter::write_ahead(const core::Plan& plan, const core::EnteringAhead& 
     record.item = 0;
     board_->write(++newest_, record);
   }
-  stop_ = after.stop_length();
-  if (stop_ > after.rest - after.stop_begin()) {
-    // The motion at the end of the former stop may need longer.
-    const core::SlidingWindow& window = plan.window();
-    stop_ = std::max(stop_, core::least_stop_time(
-                                window.limits_at_largest_rate(), window.kinds(),
-                                {after.end, end.position(), end.velocity(), end.acceleration()}));
-  }
+  stop_ = plan.stop_after_entry(ahead);
   rest_ = after.stop_begin() + stop_;
 }
 

@@ -62,6 +62,11 @@ struct CampaignOptions {
 /// beginnings.
 [[nodiscard]] Result run_starts(const CampaignOptions& options);
 
+/// Random operations on plans, one per seed from `seed` on, without boards. Checks their invariants
+/// after each operation, and that each transition between ends of a curve was made. `runs` is the
+/// number of plans.
+[[nodiscard]] Result run_plans(const CampaignOptions& options);
+
 /// A generated motion with faults of its producer and solver, with and without acceleration limits,
 /// in simulated time. Checks that no limit is exceeded and that the curve neither freezes nor
 /// jumps. `seed` is the seed of the motion. With `trace`, also writes what readers see around the

@@ -106,6 +106,10 @@ void add_starts(CLI::App& program, Asked& asked) {
            asked);
 }
 
+void add_plans(CLI::App& program, Asked& asked) {
+  add_runs(program.add_subcommand("plans", "Random operations on plans of curves"), asked);
+}
+
 void add_follow(CLI::App& program, Asked& asked) {
   auto* verb = program.add_subcommand("follow", "Sources that a curve within limits cannot meet");
   verb->add_option("--seed", asked.options.seed, "Seed of the first run")->capture_default_str();
@@ -141,6 +145,7 @@ Run run_of(const CLI::App& program, const Asked& asked) {
   if (program.got_subcommand("returns")) return run_returns;
   if (program.got_subcommand("ends")) return run_ends;
   if (program.got_subcommand("starts")) return run_starts;
+  if (program.got_subcommand("plans")) return run_plans;
   if (program.got_subcommand("follow")) return run_follow;
   if (program.got_subcommand("streams")) return run_streams;
   if (program.got_subcommand("stress")) return run_stress;
@@ -155,8 +160,8 @@ int run_program(int argc, char** argv) {
   CLI::App program("Creates streams, attacks them and counts violations", "splinecast_campaign");
   program.require_subcommand(1);
   Asked asked{.options = {.command = joined(argc, argv)}};
-  for (const auto& add : {add_kill, add_stress, add_streams, add_ends, add_starts, add_motions,
-                          add_returns, add_follow, add_requests}) {
+  for (const auto& add : {add_kill, add_stress, add_streams, add_ends, add_starts, add_plans,
+                          add_motions, add_returns, add_follow, add_requests}) {
     add(program, asked);
   }
   for (const char* name : {"motions", "returns"}) add_enter(program.get_subcommand(name), asked);

@@ -54,6 +54,18 @@ TEST(EntrySearch, PassesOverKnotsThatAreCloserThanTheShortestEntry) {
   }
 }
 
+TEST(EntrySearch, EndsAlsoWithAShortestEntryOfOneNanosecond) {
+  const MotionLimits limits{.velocity = {1e-3}, .acceleration = {1e-3}};
+  SlidingWindow target = target_of(1, sine, 5, limits);
+  for (const int least : {1, 2, 9, 10, 11}) {
+    const From from = at_rest(milliseconds(200), {5});
+    EntrySearch search(1, {});
+    const Found found = look_for(search, target, from,
+                                 {.limits = &limits, .least = Time(least), .goes_beyond = true});
+    EXPECT_EQ(found.outcome, Outcome::none) << least;
+  }
+}
+
 TEST(EntrySearch, EntersTheExtrapolationIfTheLimitsAllowNoKnot) {
   const MotionLimits limits{.acceleration = {4}};
   SlidingWindow target = target_of(1, sine, 5, limits);

@@ -147,10 +147,16 @@ class Roles(StreamTest):
             return producer
 
         with splinecast.Solver(self.name).start():
-            with arm() as producer:
-                t = time.monotonic() + 0.05
-                producer.append_many([t, t + 0.05], [[0.0], [0.25]])
-                self.assertIsNone(producer.old_end())
+            for lead in (0.05, 1, 20):  # on a busy machine a short one is too late
+                with arm() as producer:
+                    self.assertIsNone(producer.old_end())
+                    t = time.monotonic() + lead
+                    producer.append_many([t, t + 0.05], [[0.0], [0.25]])
+                    self.assertTrue(producer.wait_until_consumed(PATIENCE))
+                    refusals = producer.refusals()
+                if len(refusals) == 0:
+                    break
+                splinecast.remove(self.name)
             producer = arm()
             for call in (lambda t: producer.append(t, [0.5]), lambda t: producer.append_many([t], [[0.5]]),
                          lambda t: producer.replace_from(t - 0.1, [t], [[0.5]]), lambda t: producer.start_from(t, [0.5])):
@@ -247,7 +253,7 @@ class Live(StreamTest):
         with splinecast.Solver(self.name).start() as solver:
             producer = splinecast.Producer(self.name, names=["q"])
             self.assertTrue(producer.wait_for_solver(PATIENCE))
-            begin = time.monotonic_ns() + 200 * MS
+            begin = time.monotonic_ns() + 5_000 * MS
             times = begin + np.arange(100) * 50 * MS
             producer.append_many(times, 0.01 * np.arange(100) ** 2 * 0.05)
             self.assertTrue(producer.wait_until_consumed(PATIENCE))
