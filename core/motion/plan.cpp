@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/forms/instant.hpp"
 #include "core/forms/stop.hpp"
 #include "core/limits/limit_of.hpp"
 
@@ -15,10 +16,7 @@ Plan::Plan(std::size_t dimensions, const WindowOptions& options, bool counts_unm
       entry_end_(dimensions) {}
 
 Instant Plan::origin() const noexcept {
-  return {.time = origin_.value_or(Time{}),
-          .position = origin_state_.position(),
-          .velocity = origin_state_.velocity(),
-          .acceleration = origin_state_.acceleration()};
+  return instant_of(origin_.value_or(Time{}), origin_state_);
 }
 
 Time Plan::newest_time() const noexcept {
@@ -65,7 +63,7 @@ void Plan::restore(const PlanState& state, std::span<const Knot> knots) noexcept
   unmet_ = state.unmet;
   origin_.reset();
   if (state.origin) set_origin(*state.origin);
-  if (state.entry_end) set_entry_end(*state.entry_end);
+  if (state.entry_end) copy_values(*state.entry_end, entry_end_);
   blend_until_ = state.blend_until;
   unmet_since_ = state.unmet_since;
   refused_until_ = state.refused_until;
@@ -100,19 +98,10 @@ void Plan::copy_from(const Plan& other, std::span<Knot> scratch) noexcept {
 
 void Plan::set_origin(const Instant& state) noexcept {
   origin_ = state.time;
-  const StateRef to = origin_state_.ref();
-  std::ranges::copy(state.position, to.position.begin());
-  std::ranges::copy(state.velocity, to.velocity.begin());
-  std::ranges::copy(state.acceleration, to.acceleration.begin());
-  clamp_acceleration(window_.limits_at_largest_rate(), window_.kinds(), to.velocity,
-                     to.acceleration);
-}
-
-void Plan::set_entry_end(const Instant& state) noexcept {
-  const StateRef to = entry_end_.ref();
-  std::ranges::copy(state.position, to.position.begin());
-  std::ranges::copy(state.velocity, to.velocity.begin());
-  std::ranges::copy(state.acceleration, to.acceleration.begin());
+  copy_values(state, origin_state_);
+  const StateRef origin = origin_state_.ref();
+  clamp_acceleration(window_.limits_at_largest_rate(), window_.kinds(), origin.velocity,
+                     origin.acceleration);
 }
 
 void Plan::begin(const Instant& state) noexcept {
@@ -229,7 +218,7 @@ void Plan::enter(const EntryEnd& end, const std::optional<Instant>& from) noexce
                        .known = end.known,
                        .ends_at_known = end.state.time == window_.time(end.known - 1)};
   met_ = window_.knots();
-  set_entry_end(end.state);
+  copy_values(end.state, entry_end_);
 }
 
 void Plan::resume_at(Time t) noexcept {

@@ -44,7 +44,7 @@ struct PlanState {
 /// PlanSearch). After each:
 ///
 /// - the curve ends at rest: in the stop after the newest knot, in that of its origin or after its
-///   entry, or where it has been ended;
+///   entry, or where it has been ended; only a condition of end_on_target() may leave a velocity;
 /// - nothing before the frozen time has changed, except by a cut;
 /// - each waypoint of the run is met, passed over, or waits for an entry.
 ///
@@ -137,10 +137,11 @@ class Plan {
   /// Freezes the curve up to the right end of the segment that contains t.
   Frozen freeze(Time t) noexcept;
 
-  /// Lets the curve rest at the first waypoint; lets it follow the target from there on instead; or
-  /// decides that it starts by an entry from that rest. Require is_start_open().
+  /// Lets the curve rest at the first waypoint. Requires is_start_open(), as do the next two.
   void rest_at_start() noexcept;
+  /// After that: lets the curve follow the target from the first waypoint on.
   void start_on_target() noexcept;
+  /// After that: lets the curve start by an entry, which is searched for.
   void start_by_entry() noexcept;
 
   /// Ends the curve's way on the target at a knot, which it meets. Then only an entry returns to
@@ -154,24 +155,24 @@ class Plan {
   /// Begins or ends the search for an entry.
   void set_searching(bool is_searching) noexcept { core::set_searching(end_, is_searching); }
 
-  /// Records until when waypoints that the curve cannot follow are refused; and that it has taken
-  /// one again, at a time.
+  /// Records until when waypoints are refused because the curve cannot follow them.
   void give_up_until(Time t) noexcept { refused_until_ = t; }
+  /// Records that the curve has taken a waypoint again, at t.
   void resume_at(Time t) noexcept;
 
   /// Ends the curve on the target with a boundary condition. Requires is_on_target().
   void end_on_target(const Condition& end) noexcept;
-  /// Ends the curve as it is: in its stop, slowed down on its path, or at rest at its newest knot.
+  /// Ends the curve in a stop, or slowed down on its path.
   void end_as(const Ended& how) noexcept { ended_ = how; }
+  /// Ends a curve that rests at its newest knot already.
   void end_at_newest() noexcept;
   /// Ends the curve by an entry that rests at its newest knot: as enter().
   void end_by_entry(Time rest, const std::optional<Instant>& from) noexcept;
-  /// The same, from a state of the target's last piece before knot `knot`.
+  /// The same, from the state at the knot before `knot` of the target's last piece.
   void end_by_entry_from_target(Time rest, const Instant& from, std::size_t knot) noexcept;
 
  private:
   void set_origin(const Instant& state) noexcept;
-  void set_entry_end(const Instant& state) noexcept;
   void wait_for_entry(std::size_t met) noexcept;
   void note_met() noexcept;
   void mark_newest_met() noexcept;

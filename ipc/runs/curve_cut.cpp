@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/forms/instant.hpp"
 #include "core/limits/limit_of.hpp"
 #include "ipc/board/reader.hpp"
 #include "ipc/board/writer.hpp"
@@ -43,12 +44,7 @@ CurveCut::CurveCut(KnotBoardWriter& board, const KnotBoardReader& published, Dim
       state_(published.dimensions()),
       position_(published.dimensions()) {}
 
-Instant CurveCut::state() const noexcept {
-  return {.time = time_,
-          .position = state_.position(),
-          .velocity = state_.velocity(),
-          .acceleration = state_.acceleration()};
-}
+Instant CurveCut::state() const noexcept { return core::instant_of(time_, state_); }
 
 bool CurveCut::read(Word number) noexcept {
   return segment_.take(*published_, summary_, number) == BoardSegment::Taken::whole &&

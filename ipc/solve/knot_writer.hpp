@@ -89,8 +89,7 @@ class KnotWriter {
   /// `origin`: the new one, which the cut has been made for.
   void cut(const core::Plan& plan, const CurveOrigin& origin) noexcept;
   void appended(const core::Plan& plan, Word item) noexcept;
-  /// plan.freeze() has returned that the curve has left its target; so also after
-  /// leave_target_at().
+  /// After plan.leave_target_at(), and when plan.freeze() has returned Frozen::left_target.
   void left_target(const core::Plan& plan) noexcept;
   void rests_at_start(const core::Plan& plan) noexcept;
   void starts_on_target(const core::Plan& plan) noexcept;

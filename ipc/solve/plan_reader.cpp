@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/forms/instant.hpp"
 #include "ipc/layout/knot_slots.hpp"
 
 namespace splinecast::ipc {
@@ -53,10 +54,6 @@ core::End end_of(Course course) noexcept {
       return core::Starting{};
   }
   return core::OnTarget{};
-}
-
-Instant instant_of(Time time, const State& state) noexcept {
-  return {time, state.position(), state.velocity(), state.acceleration()};
 }
 
 }  // namespace
@@ -113,7 +110,7 @@ bool PlanReader::read_course() noexcept {
     if (!read_origin(met - 1) || !read_knot(met) || !knot_.note.arrives) return false;
     entering->end = knot_.time;
     std::ranges::copy(knot_.acceleration(), entry_end_.ref().acceleration.begin());
-    state_.entry_end = instant_of(knot_.time, entry_end_);
+    state_.entry_end = core::instant_of(knot_.time, entry_end_);
     return true;
   }
   Word number = summary_.newest;
@@ -129,11 +126,8 @@ bool PlanReader::read_origin(Word number) noexcept {
   if (number < summary_.run || !read_knot(number)) return false;
   const core::Knot knot = to_knot(values_);
   if (!is_sound(knot) || knot_.note.is_waypoint || knot.acceleration.empty()) return false;
-  const StateRef to = origin_state_.ref();
-  std::ranges::copy(knot.position, to.position.begin());
-  std::ranges::copy(knot.velocity, to.velocity.begin());
-  std::ranges::copy(knot.acceleration, to.acceleration.begin());
-  state_.origin = instant_of(knot.time, origin_state_);
+  core::copy_values({knot.time, knot.position, knot.velocity, knot.acceleration}, origin_state_);
+  state_.origin = core::instant_of(knot.time, origin_state_);
   origin_ = {.number = number,
              .is_corner = knot_.begins_at_rest(),
              .stopped_by = knot_.begins_stoppers_stop() ? knot_.item : 0};
@@ -146,11 +140,9 @@ bool PlanReader::read_ahead(core::EnteringAhead& ahead, Word& number) noexcept {
   if (!knot_.note.arrives && (number < 2 || !read_knot(--number))) return false;
   if (!knot_.note.arrives || number < 2) return false;
   ahead.after = {.end = knot_.time};
-  const StateRef to = entry_end_.ref();
-  std::ranges::copy(knot_.waypoint(), to.position.begin());
-  std::ranges::copy(knot_.velocity(), to.velocity.begin());
-  std::ranges::copy(knot_.acceleration(), to.acceleration.begin());
-  state_.entry_end = instant_of(knot_.time, entry_end_);
+  core::copy_values({knot_.time, knot_.waypoint(), knot_.velocity(), knot_.acceleration()},
+                    entry_end_);
+  state_.entry_end = core::instant_of(knot_.time, entry_end_);
   ahead.known = std::min<Word>(knot_.item, summary_.run_knots);
   --number;
   ahead.ends_at_known =

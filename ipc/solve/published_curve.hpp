@@ -229,11 +229,12 @@ class PublishedCurve {
 
   // Room, and what precedes the plan: published_curve.cpp.
   [[nodiscard]] bool has_room_to_enter(Time keep) const noexcept;
-  /// Makes the cut that was found, if the next piece begins there: returns its state and number.
+  /// The state at a cut and the number of its knot; nothing if a piece begins in the old origin.
   struct NewOrigin {
     std::optional<Instant> state;
     std::optional<Word> number;
   };
+  /// Writes the cut that was found, if the next piece begins there.
   [[nodiscard]] NewOrigin write_cut() noexcept;
 
   [[nodiscard]] bool is_live() const noexcept { return search_.options().is_live; }

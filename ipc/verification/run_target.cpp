@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/forms/instant.hpp"
 #include "core/laws/law_path.hpp"
 #include "ipc/ring/item.hpp"
 #include "splinecast/waypoint.hpp"
@@ -29,9 +30,7 @@ void RunTarget::list_waypoints(Word first) {
 
 void RunTarget::begin_at(const Instant& state) noexcept {
   begin_time_ = state.time;
-  std::ranges::copy(state.position, begin_.ref().position.begin());
-  std::ranges::copy(state.velocity, begin_.ref().velocity.begin());
-  std::ranges::copy(state.acceleration, begin_.ref().acceleration.begin());
+  core::copy_values(state, begin_);
 }
 
 /// Lists the waypoints of the plan of a law whose pieces begin with item `first`, from its waypoint
