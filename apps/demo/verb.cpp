@@ -169,8 +169,8 @@ int run_demo(const DemoOptions& options) {
   ReplayOptions replay{.stream = stream, .start_from = FromFirst{}};
   if (!options.file.empty()) replay.duration = options.seconds;
   if (!options.law.empty()) {
-    replay.law = options.law;
-    replay.clock = StreamClock::law;
+    replay.ring.law = options.law;
+    replay.ring.clock = StreamClock::law;
   }
   RefusedRows refused;
   Recording recording(std::make_unique<TableRows>(table), table.kinds, preparation_of(replay),

@@ -24,9 +24,10 @@
 namespace splinecast::apps {
 namespace {
 
-/// Time from a stop signal to the parent until it kills its children. Shorter than the parent's own
-/// limit of 5 s, so that the parent can still clean up.
-constexpr Time kGrace = std::chrono::seconds(3);
+/// Time from a stop signal to the parent until it kills its children. Long enough for a child that
+/// has to wait for a CPU. The parent extends its own limit meanwhile, so that it can still clean
+/// up.
+constexpr Time kGrace = std::chrono::seconds(20);
 
 /// Returns false if the other end is closed.
 bool write_all(int pipe, std::string_view text) {
@@ -92,6 +93,7 @@ nlohmann::json Child::result() {
   std::array<char, 4096> buffer{};
   for (;;) {
     if (stop_requested()) stop();
+    extend_shutdown();
     if (time_since_stop() > kGrace) signal(SIGKILL);
     constexpr int kSliceMilliseconds = 100;
     pollfd ready{.fd = pipe_, .events = POLLIN, .revents = 0};

@@ -23,7 +23,7 @@ class Child {
   ~Child();
 
   /// Waits for the child to end and returns its result. Forwards a stop request to the child, and
-  /// kills the child 3 s later if it still runs. Throws Failure if the child failed or was killed,
+  /// kills the child 20 s later if it still runs. Throws Failure if the child failed or was killed,
   /// Interrupted if a stop was requested.
   nlohmann::json result();
 

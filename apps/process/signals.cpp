@@ -85,6 +85,11 @@ void catch_stop_signals_as_child_of(pid_t parent) {
   catch_signals();
 }
 
+void extend_shutdown() noexcept {
+  const bool is_limited = alarm(kGraceSeconds) > 0;
+  if (!is_limited) alarm(0);
+}
+
 bool stop_requested() noexcept { return stop.load(std::memory_order_relaxed); }
 
 Time time_since_stop() noexcept {

@@ -34,7 +34,7 @@ std::string name_of(const ipc::RampEffect& effect, std::size_t d) {
 
 }  // namespace
 
-std::string in_words(const LawState& state) {
+std::string in_words(const LawReport& state) {
   std::string text;
   if (state.is_solved) {
     text = fmt::format("'{}': rate {:g}, slope {:g} /s, {:g} at most; lag {:.3f} s\n", state.law,
@@ -51,7 +51,7 @@ std::string in_words(const LawState& state) {
   return text;
 }
 
-ordered_json to_json(const LawState& state) {
+ordered_json to_json(const LawReport& state) {
   ordered_json json{{"law", state.law}, {"solved", state.is_solved}};
   if (state.is_solved) {
     json["rate"] = state.rate;

@@ -11,7 +11,7 @@
 namespace splinecast::apps {
 
 /// What is in force on a time law.
-struct LawState {
+struct LawReport {
   std::string law;
   bool is_solved = false;  ///< a solver has begun the law; else the next three are not valid
   double rate = 1;
@@ -22,8 +22,8 @@ struct LawState {
   std::vector<std::string> followers;  ///< streams that follow the law
 };
 
-[[nodiscard]] std::string in_words(const LawState& state);
-[[nodiscard]] nlohmann::ordered_json to_json(const LawState& state);
+[[nodiscard]] std::string in_words(const LawReport& state);
+[[nodiscard]] nlohmann::ordered_json to_json(const LawReport& state);
 
 /// The effect of a ramp on one stream.
 [[nodiscard]] std::string in_words(const ipc::RampEffect& effect);

@@ -98,7 +98,7 @@ std::vector<ipc::CommanderState> commanders_of(const RateOptions& options) {
 }
 
 int show(const RateOptions& options) {
-  LawState state;
+  LawReport state;
   state.law = options.law;
   state.commanders = commanders_of(options);
   const auto law = open_law(options);

@@ -47,7 +47,7 @@ class Replay {
     const Time base = first_time();
     require_continuation(base);
     const bool played = play_to_end(base);
-    if (!played && stop_requested() && is_live(options_.clock)) sender_.stop_at_once();
+    if (!played && stop_requested() && is_live(options_.ring.clock)) sender_.stop_at_once();
     finish();
     return report((played || rows_.stopped()) && sender_.await_consumption());
   }
@@ -61,7 +61,7 @@ class Replay {
       return false;
     }
     if (!sender_.await_consumption()) return false;
-    board_.emplace(options_.stream, producer_.stream_id(), options_.trust);
+    board_.emplace(options_.stream, producer_.stream_id(), options_.ring.trust);
     before_ = board_->summary();
     rows_.begin([this] { (void)board_->summary(); });
     sender_.set_lead(
@@ -71,7 +71,7 @@ class Replay {
 
   /// Starts a new live stream where the machine is. Returns by how much the lead grows.
   Time start() {
-    if (!is_live(options_.clock) || producer_.continues()) return {};
+    if (!is_live(options_.ring.clock) || producer_.continues()) return {};
     recording_.rewind();
     PreparedRow first;
     if (!recording_.next(first)) return {};
@@ -119,17 +119,10 @@ class Replay {
   }
 
   [[nodiscard]] ProducerOptions producer_options() const {
-    ProducerOptions made{.dimensions = recording_.columns().dimensions(),
-                         .names = {},
-                         .units = {},
-                         .kinds = recording_.kinds(),
-                         .clock = options_.clock,
-                         .law = options_.law,
-                         .start = options_.start.value_or(unasked()),
-                         .limits = options_.limits,
-                         .capacity = options_.capacity,
-                         .access = options_.access,
-                         .trust = options_.trust};
+    ProducerOptions made = options_.ring;
+    made.dimensions = recording_.columns().dimensions();
+    made.kinds = recording_.kinds();
+    made.start = options_.start.value_or(unasked());
     for (const std::string& column : recording_.columns().names) {
       auto [name, unit] = name_and_unit(column);
       made.names.push_back(std::move(name));
@@ -151,7 +144,7 @@ class Replay {
 
   /// The default boundary condition: full stop on a live stream, else the method's own condition.
   [[nodiscard]] Condition unasked() const {
-    const bool live = is_live(options_.clock);
+    const bool live = is_live(options_.ring.clock);
     return {.kind = live ? ConditionKind::halt : ConditionKind::own, .value = {}};
   }
 
@@ -173,7 +166,8 @@ class Replay {
 
   /// Time of the first waypoint on the stream's clock.
   [[nodiscard]] Time first_time() {
-    return is_live(options_.clock) ? producer_.now() + sender_.lead() : recording_.survey().first;
+    return is_live(options_.ring.clock) ? producer_.now() + sender_.lead()
+                                        : recording_.survey().first;
   }
 
   void require_continuation(Time first) const {
@@ -243,7 +237,8 @@ ReplayReport replay_recording(Recording& recording, const ReplayOptions& options
   try {
     return Replay(recording, options, refused).run();
   } catch (...) {
-    if (options.embedded && !had_board) remove_board_without_ring(options.stream, options.trust);
+    if (options.embedded && !had_board)
+      remove_board_without_ring(options.stream, options.ring.trust);
     throw;
   }
 }

@@ -32,8 +32,8 @@ struct ReplayOptions {
   std::size_t loops = 1;
   std::optional<Time> from{};
   std::optional<Time> duration{};
-  StreamClock clock = StreamClock::monotonic;
-  std::string law{};           ///< with clock law: the time law that the stream follows
+  /// Of the stream. What the recording determines is not read: dimensions, kinds, start.
+  ProducerOptions ring{};
   std::optional<Time> lead{};  ///< unset: what the recording and the settle lag need
   std::optional<Condition> start{};
   std::optional<StartFrom> start_from{};
@@ -46,10 +46,6 @@ struct ReplayOptions {
   bool verify = false;  ///< solve the settled segments again and compare
   bool json = false;
   bool quiet = false;
-  std::size_t capacity = 1024;
-  IngestLimits limits{};
-  RegionAccess access{};
-  Trust trust{};
   SolverOptions solver{};  ///< of the embedded solver
 };
 

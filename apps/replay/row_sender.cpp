@@ -41,10 +41,10 @@ bool RowSender::send(const PlayedRow& row, Waypoint waypoint, bool follows_gap) 
 /// Waits until it is time to send: on a live stream `lead` before the waypoint's time, on a
 /// recorded stream at the recorded time after the first waypoint.
 bool RowSender::pace(Time waypoint_time) {
-  if (options_.clock == StreamClock::monotonic) {
+  if (options_.ring.clock == StreamClock::monotonic) {
     return solver_.wait_until(waypoint_time - lead_);
   }
-  if (options_.clock == StreamClock::law) return wait_for_stream_time(waypoint_time - lead_);
+  if (options_.ring.clock == StreamClock::law) return wait_for_stream_time(waypoint_time - lead_);
   if (rows_.sent() == 0) recorded_start_ = clock_.now() - waypoint_time;
   return solver_.wait_until(recorded_start_ + waypoint_time);
 }
@@ -62,7 +62,7 @@ bool RowSender::wait_for_stream_time(Time instant) {
 /// Lets the motion stop at the last waypoint, and plans its beginning before the next one. A live
 /// stream that has starved has stopped already. Returns false if a stop is requested.
 bool RowSender::stop_at_gap(const Waypoint& next) {
-  const bool moves = is_live(options_.clock);
+  const bool moves = is_live(options_.ring.clock);
   if (!moves || producer_.earliest() <= *last_time_) {
     AppendStatus status = replace(*last_time_, {});
     while (status == AppendStatus::full) {
@@ -144,7 +144,7 @@ AppendStatus RowSender::append_when_there_is_room(Waypoint& waypoint) {
 /// time, 0 if the waypoint is later. With `--late shift`, moves a late waypoint to `lead` after
 /// now.
 Time RowSender::shift_if_late(Waypoint& waypoint) {
-  if (!is_live(options_.clock)) return {};
+  if (!is_live(options_.ring.clock)) return {};
   const Time now = producer_.now();
   const Time lateness = std::max(producer_.earliest() - waypoint.time, Time::zero());
   if (lateness > Time::zero() && options_.late == LatePolicy::shift) {
@@ -181,7 +181,7 @@ AppendStatus RowSender::replace(Time t, std::span<const Waypoint> waypoints) {
 bool RowSender::is_behind() const {
   rows_.look();
   const bool is_behind =
-      rows_.undecided() >= ipc::kRefusalsKept && options_.capacity <= ipc::kRefusalsKept;
+      rows_.undecided() >= ipc::kRefusalsKept && options_.ring.capacity <= ipc::kRefusalsKept;
   if (is_behind) rows_.require_readable();
   return is_behind;
 }

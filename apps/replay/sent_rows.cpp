@@ -26,7 +26,7 @@ void SentRows::begin_log() {
         "waypoints; 'splinecast rm {}' removes it, once its solver has been stopped",
         options_.stream, options_.stream));
   }
-  log_.emplace(options_.stream, producer_.stream_id(), options_.trust);
+  log_.emplace(options_.stream, producer_.stream_id(), options_.ring.trust);
 }
 
 void SentRows::note_start(const Waypoint& state) {

@@ -31,7 +31,7 @@ bool has_begun(const std::string& law, const Trust& trust) {
 
 void throw_no_solver(const ReplayOptions& options) {
   if (ipc::region_exists(options.stream, ipc::RegionKind::spline)) {
-    (void)ipc::open_board(options.stream, false, options.trust);
+    (void)ipc::open_board(options.stream, false, options.ring.trust);
   }
   throw TimeOut(fmt::format("no solver for stream '{}' within {} s: run 'splinecast solve {}'",
                             options.stream, to_seconds(options.wait), options.stream));
@@ -49,16 +49,16 @@ bool await_solver_of_finished(const ReplayOptions& options) {
 }
 
 bool await_law(const ReplayOptions& options) {
-  if (options.law.empty()) return true;
-  ipc::require_stream_name(options.law);
+  if (options.ring.law.empty()) return true;
+  ipc::require_stream_name(options.ring.law);
   const MonotonicClock clock;
   const Time end = deadline(clock, options.wait);
-  while (!has_begun(options.law, options.trust)) {
+  while (!has_begun(options.ring.law, options.ring.trust)) {
     if (clock.now() >= end) {
       throw TimeOut(
           fmt::format("time law '{0}' has not begun within {1} s: run 'splinecast solve "
                       "{0}' and 'splinecast rate {0} 1'",
-                      options.law, to_seconds(options.wait)));
+                      options.ring.law, to_seconds(options.wait)));
     }
     if (!sleep_until(clock.now() + std::chrono::milliseconds(2))) return false;
   }
@@ -66,7 +66,7 @@ bool await_law(const ReplayOptions& options) {
 }
 
 Time rest_of_old_motion(const ReplayOptions& options, std::uint64_t stream_id) {
-  const Time end = ipc::end_of_old_motion(options.stream, stream_id, options.trust);
+  const Time end = ipc::end_of_old_motion(options.stream, stream_id, options.ring.trust);
   const Time now = MonotonicClock().now();
   ipc::require_near_end(options.stream, end, now);
   if (end <= now) return Time::zero();

@@ -152,14 +152,14 @@ void add_clock(Command& verb, ReplayOptions& options) {
   add_choice(
       verb, "--clock", "live", "recorded",
       [&options](bool live) {
-        options.clock = live ? StreamClock::monotonic : StreamClock::recorded;
+        options.ring.clock = live ? StreamClock::monotonic : StreamClock::recorded;
       },
       "Clock of the stream: live (default), this host's clock, from now on; recorded, the file's "
       "time stamps");
 }
 
 void add_law(Command& verb, ReplayOptions& options) {
-  verb.option("--law", options.law,
+  verb.option("--law", options.ring.law,
               "Time law that the stream follows: the times of its waypoints are the law's stream "
               "time")
       .type("LAW");
@@ -243,7 +243,7 @@ Preparation preparation_of(const ReplayOptions& options) {
   return {.from = options.from,
           .duration = options.duration,
           .rate = options.rate.value_or(1.0),
-          .limits = options.limits,
+          .limits = options.ring.limits,
           .late = options.late,
           .gap = options.gap};
 }
@@ -302,13 +302,13 @@ void add_row_policies(Command& verb, ReplayOptions& options) {
 }
 
 void add_ring_options(Command& verb, ReplayOptions& options) {
-  add_count(verb, "--capacity", options.capacity,
+  add_count(verb, "--capacity", options.ring.capacity,
             "Capacity of the ring in waypoints, 2 to 16777216, rounded up to a power of two "
             "(default 1024)");
   add_seconds(verb, "--wait", options.wait, "Time in s to wait for a solver, from 0 (default 10)");
-  add_interval(verb, "--min-interval", options.limits.min_interval,
+  add_interval(verb, "--min-interval", options.ring.limits.min_interval,
                "Minimum time between waypoints in s, above 0 (default 1e-6)");
-  add_interval(verb, "--max-interval", options.limits.max_interval,
+  add_interval(verb, "--max-interval", options.ring.limits.max_interval,
                "Maximum time between waypoints in s, above 0 (default 3600)");
 }
 
@@ -321,14 +321,14 @@ void require_agreeing(const ReplayOptions& options) {
     throw UsageError("--method, --lambda, --time-scale, --settle, --tail, --force-lag",
                      "go with --embedded only; without it they are options of 'solve'");
   }
-  if (!options.law.empty() && !is_live(options.clock)) {
+  if (!options.ring.law.empty() && !is_live(options.ring.clock)) {
     throw UsageError("--law", "goes with --clock live only");
   }
-  if (options.start_from && !is_live(options.clock)) {
+  if (options.start_from && !is_live(options.ring.clock)) {
     throw UsageError("--start-from", "goes with --clock live only");
   }
   const Condition* end = condition_of(options.end);
-  if (is_live(options.clock) && end != nullptr && !is_at_rest(end->kind)) {
+  if (is_live(options.ring.clock) && end != nullptr && !is_at_rest(end->kind)) {
     throw UsageError("--end", "a live stream ends at rest: rest, clamped or halt");
   }
 }
@@ -356,18 +356,18 @@ void add_replay(Command& verb, Action& action) {
   add_solver_curve(verb, options->solver);
   verb.flag("--json", options->json, "Print JSON");
   add_table_options(verb, options->table);
-  add_access(verb, options->access);
-  add_trust(verb, options->trust);
+  add_access(verb, options->ring.access);
+  add_trust(verb, options->ring.trust);
   verb.callback([&action, options, stream] {
     if (!stream.is_given() && !verifies_recording(*options)) {
       throw UsageError("--stream", "is required");
     }
-    if (!is_live(options->clock)) take_former_rest(options->end);
+    if (!is_live(options->ring.clock)) take_former_rest(options->end);
     require_agreeing(*options);
     options->quiet = options->table.quiet;
-    if (!options->law.empty()) options->clock = StreamClock::law;
-    options->solver.access = options->access;
-    options->solver.trust = options->trust;
+    if (!options->ring.law.empty()) options->ring.clock = StreamClock::law;
+    options->solver.access = options->ring.access;
+    options->solver.trust = options->ring.trust;
     action = [options] { return run_replay(*options); };
   });
 }

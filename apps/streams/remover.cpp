@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "apps/process/messages.hpp"
+#include "apps/process/signals.hpp"
 #include "splinecast/streams.hpp"
 
 namespace splinecast::apps {
@@ -12,6 +13,7 @@ StreamRemover::StreamRemover(std::vector<std::string> streams) : streams_(std::m
 
 StreamRemover::~StreamRemover() {
   for (const std::string& stream : streams_) {
+    extend_shutdown();
     try {
       remove_stream(stream);
     } catch (const std::exception& error) {

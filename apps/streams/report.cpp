@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/recordings/refused_rows.hpp"
-#include "ipc/board/refused_item.hpp"
+#include "ipc/board/refusal_record.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/limits.hpp"
 #include "ipc/layout/summary.hpp"
@@ -77,7 +77,7 @@ ordered_json producer_json(const ipc::StreamInfo& info) {
 
 ordered_json refusals_json(const ipc::StreamInfo& info) {
   ordered_json list = ordered_json::array();
-  for (const ipc::RefusedItem& refusal : info.refusals) {
+  for (const ipc::RefusalRecord& refusal : info.refusals) {
     list.push_back({{"item", refusal.item}, {"reason", to_string(refusal.reason)}});
   }
   return list;

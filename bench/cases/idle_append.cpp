@@ -8,6 +8,7 @@
 #include "apps/process/signals.hpp"
 #include "bench/harness/solved_streams.hpp"
 #include "bench/harness/trips.hpp"
+#include "ipc/memory/poll_schedule.hpp"
 #include "ipc/sweep/many_streams.hpp"
 #include "splinecast/producer.hpp"
 
@@ -46,7 +47,7 @@ void await_motion(Reader& reader, Time t, State& state) {
 nlohmann::json append_to_idle(std::vector<Producer>& producers, std::vector<Reader>& readers) {
   const MonotonicClock clock;
   std::mt19937_64 random(1);
-  std::uniform_int_distribution<Time::rep> pause(0, ipc::StreamSweep::kQuietPause.count());
+  std::uniform_int_distribution<Time::rep> pause(0, ipc::PollSchedule::kIdlePause.count());
   State state(kDimensions);
   Trips trips(kAppends);
   for (std::size_t i = 0; i < kAppends; ++i) {
@@ -76,10 +77,10 @@ void idle_append(benchmark::State& bench) {
         throw std::runtime_error("the first waypoint of an idle stream was not solved");
       }
     }
-    apps::sleep_until(first + 2 * ipc::StreamSweep::kQuietAfter);
+    apps::sleep_until(first + 2 * ipc::PollSchedule::kIdleAfter);
     report(bench, append_to_idle(producers, readers));
   }
-  bench.counters["quiet_sweep_ns"] = static_cast<double>(ipc::StreamSweep::kQuietPause.count());
+  bench.counters["quiet_sweep_ns"] = static_cast<double>(ipc::PollSchedule::kIdlePause.count());
 }
 
 BENCHMARK(idle_append)

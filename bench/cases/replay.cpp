@@ -27,7 +27,7 @@ void replay(benchmark::State& bench) {
   apps::ReplayOptions options{.file = csv_recording().path(),
                               .stream = stream,
                               .rate = {},
-                              .clock = StreamClock::recorded,
+                              .ring = {.clock = StreamClock::recorded},
                               .embedded = true,
                               .quiet = true};
   for (auto _ : bench) {

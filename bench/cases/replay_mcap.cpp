@@ -15,7 +15,7 @@ void replay(benchmark::State& bench, McapRecording::Kind kind) {
                               .table = {.quiet = true},
                               .stream = stream,
                               .rate = {},
-                              .clock = StreamClock::recorded,
+                              .ring = {.clock = StreamClock::recorded},
                               .embedded = true,
                               .quiet = true};
   for (auto _ : bench) {

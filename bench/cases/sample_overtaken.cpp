@@ -27,7 +27,7 @@ nlohmann::json replay_until_stopped(const std::string& stream) {
                               .stream = stream,
                               .rate = {},
                               .loops = 1'000'000,
-                              .clock = StreamClock::recorded,
+                              .ring = {.clock = StreamClock::recorded},
                               .embedded = true,
                               .quiet = true};
   apps::RefusedRows refused;

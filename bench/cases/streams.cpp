@@ -9,6 +9,7 @@
 #include "apps/process/use.hpp"
 #include "apps/soak/roles.hpp"
 #include "bench/harness/solved_streams.hpp"
+#include "ipc/memory/poll_schedule.hpp"
 #include "ipc/roles/internals.hpp"
 #include "ipc/sweep/many_streams.hpp"
 
@@ -98,7 +99,7 @@ SolverOptions options_of(const Row& row) {
 void solve(benchmark::State& bench, Row row) {
   ManyStreams world(row.streams, row.is_idle, options_of(row));
   const MonotonicClock clock;
-  if (row.is_idle) apps::sleep_until(clock.now() + 2 * ipc::StreamSweep::kQuietAfter);
+  if (row.is_idle) apps::sleep_until(clock.now() + 2 * ipc::PollSchedule::kIdleAfter);
   const auto before = world.solved();
   double cpu = 0;
   double wall = 0;

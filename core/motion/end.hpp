@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <variant>
 
+#include "core/forms/stop.hpp"
 #include "splinecast/time.hpp"
 
 /// How a curve ends, relative to its *target*, the spline through the waypoints of a run. The
@@ -34,11 +36,16 @@ struct AfterEntry {
 
   [[nodiscard]] bool has_line() const noexcept { return end < line_end; }
   [[nodiscard]] Time stop_begin() const noexcept { return has_line() ? line_end : end; }
-  [[nodiscard]] Time stop_length() const noexcept;
+  [[nodiscard]] Time stop_length() const noexcept {
+    return std::max(rest - stop_begin(), kLeastStopTime);
+  }
 
   /// Writes the position at the end of the line.
   void write_line_end(std::span<const double> position, std::span<const double> velocity,
-                      std::span<double> out) const noexcept;
+                      std::span<double> out) const noexcept {
+    const double line = to_seconds(line_end - end);
+    for (std::size_t d = 0; d < out.size(); ++d) out[d] = position[d] + line * velocity[d];
+  }
 };
 
 /// An entry ends ahead of the newest waypoint, and a stop follows.

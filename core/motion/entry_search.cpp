@@ -12,10 +12,6 @@
 namespace splinecast::core {
 namespace {
 
-/// A shorter rest of the straight line is left out: the derivatives of so short a segment are those
-/// of the rounding errors of its positions.
-constexpr Time kShortestLine{1'000'000};
-
 /// Whether the velocity at the newest knot is an estimate until the next knot is known.
 bool is_guess(const SlidingWindow& target) noexcept {
   return !target.options().interpolant.method->needs_velocity();
@@ -65,7 +61,7 @@ EntrySearch::Outcome EntrySearch::search_knots(const SlidingWindow& target, cons
   const std::size_t newer = std::max<std::size_t>(rules.newer, is_guess(target) ? 1 : 0);
   for (; next_knot_ + newer < target.knots(); ++next_knot_) {
     if (target.time(next_knot_) - from.time < rules.least) continue;
-    end_at_knot(target, next_knot_);
+    end_ = end_at_knot(target, next_knot_, end_state_);
     const Verdict verdict = judge(from, rules, tries);
     if (verdict == Verdict::untried) return Outcome::more;
     if (verdict == Verdict::exceeds) continue;
@@ -81,7 +77,7 @@ EntrySearch::Outcome EntrySearch::search_beyond(const SlidingWindow& target, con
   const Time to_newest = target.time(target.knots() - 1) - from.time;
   const bool guesses = is_guess(target);
   while (const auto duration = next_duration(from.time, to_newest, guesses, rules.least)) {
-    end_beyond(target, from.time + *duration);
+    end_ = end_ahead(target, extrapolation_, from.time + *duration, end_state_);
     const double before = duration_;
     const bool was_longest = is_longest_;
     duration_ = to_seconds(*duration);
@@ -125,7 +121,7 @@ EntrySearch::Outcome EntrySearch::fall_back(const SlidingWindow& target, const I
                                             const EntryRules& rules) noexcept {
   if (!fallback_knot_ || *fallback_knot_ < target.oldest_segment()) return Outcome::none;
   if (target.time(*fallback_knot_) - from.time < rules.least) return Outcome::none;
-  end_at_knot(target, *fallback_knot_);
+  end_ = end_at_knot(target, *fallback_knot_, end_state_);
   if (ends_outside(*rules.limits)) return Outcome::none;
   allow(from, rules);
   return passes(from) ? Outcome::found : Outcome::none;
@@ -167,30 +163,6 @@ EntrySearch::Verdict EntrySearch::judge(const Instant& from, const EntryRules& r
   if (tries <= 0) return Verdict::untried;
   --tries;
   return passes(from) ? Verdict::passes : Verdict::exceeds;
-}
-
-void EntrySearch::end_at_knot(const SlidingWindow& target, std::size_t knot) noexcept {
-  const Knot at = target.knot(knot);
-  target.write_acceleration(knot, end_state_.ref().acceleration);
-  end_ = {.knot = knot,
-          .known = target.knots(),
-          .state = {.time = at.time,
-                    .position = at.position,
-                    .velocity = at.velocity,
-                    .acceleration = end_state_.acceleration()}};
-}
-
-void EntrySearch::end_beyond(const SlidingWindow& target, Time t) noexcept {
-  const Time line = extrapolation_.line_end() - t;
-  if (line > Time::zero() && line < kShortestLine) t = extrapolation_.line_end();
-  extrapolation_.state_at(t, end_state_.ref());
-  end_ = {.known = target.knots(),
-          .state = {.time = t,
-                    .position = end_state_.position(),
-                    .velocity = end_state_.velocity(),
-                    .acceleration = end_state_.acceleration()},
-          .line_end = extrapolation_.line_end(),
-          .rest = extrapolation_.rest()};
 }
 
 /// Whether all segments after the knot at which the entry ends respect the limits. The first call

@@ -7,6 +7,7 @@
 #include "core/forms/entry.hpp"
 #include "core/limits/check.hpp"
 #include "core/limits/position_range.hpp"
+#include "core/motion/entry_end.hpp"
 #include "core/motion/extrapolation.hpp"
 #include "core/online/sliding_window.hpp"
 #include "core/polynomial/segment.hpp"
@@ -35,15 +36,6 @@ struct EntryRules {
   [[nodiscard]] const MotionLimits& of_path() const noexcept {
     return path_limits != nullptr ? *path_limits : *limits;
   }
-};
-
-/// The end of an entry. Spans refer to memory of the search and are valid until its next call.
-struct EntryEnd {
-  std::optional<std::size_t> knot{};  ///< knot of the target; none: after the newest one
-  std::size_t known = 0;              ///< number of knots of the target at the search
-  Instant state{};
-  Time line_end{};  ///< only without `knot`: end of the straight line, which may be before `state`
-  Time rest{};      ///< only without `knot`: end of the stop segment
 };
 
 /// Number of segments after which the effect of a start at rest on the target is below 1/50.
@@ -117,7 +109,7 @@ class EntrySearch {
   /// three times the acceleration of the first three waypoints) if that is larger.
   [[nodiscard]] bool keeps_start(const SlidingWindow& target, const EntryRules& rules) noexcept;
 
-  /// The end found by the last search.
+  /// The end found by the last search. Its spans are valid until the next call.
   [[nodiscard]] const EntryEnd& end() const noexcept { return end_; }
 
   /// The entry found by the last search.
@@ -133,8 +125,6 @@ class EntrySearch {
   [[nodiscard]] Outcome fall_back(const SlidingWindow& target, const Instant& from,
                                   const EntryRules& rules) noexcept;
   [[nodiscard]] Verdict judge(const Instant& from, const EntryRules& rules, int& tries) noexcept;
-  void end_at_knot(const SlidingWindow& target, std::size_t knot) noexcept;
-  void end_beyond(const SlidingWindow& target, Time t) noexcept;
   [[nodiscard]] bool keeps_behind(const SlidingWindow& target, const MotionLimits& limits) noexcept;
   [[nodiscard]] bool rotations_keep_line(const MotionLimits& limits) noexcept;
   [[nodiscard]] bool keeps_beyond(const MotionLimits& limits) noexcept;

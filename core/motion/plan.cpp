@@ -8,12 +8,18 @@
 #include "core/limits/limit_of.hpp"
 
 namespace splinecast::core {
+namespace {
+
+constexpr std::array<double, kMaxDimensions> kZeros{};
+
+}  // namespace
 
 Plan::Plan(std::size_t dimensions, const WindowOptions& options, bool counts_unmet)
     : window_(dimensions, options),
       counts_unmet_(counts_unmet),
       origin_state_(dimensions),
-      entry_end_(dimensions) {}
+      entry_end_(dimensions),
+      moved_(3 * dimensions) {}
 
 Instant Plan::origin() const noexcept {
   return instant_of(origin_.value_or(Time{}), origin_state_);
@@ -29,6 +35,23 @@ std::span<const double> Plan::newest_position() const noexcept {
   return window_.is_later_run() ? origin_state_.position() : std::span<const double>{};
 }
 
+Waypoint Plan::nearest(const Waypoint& given) noexcept {
+  if (window_.kinds().all_linear()) return given;
+  const auto copy = [this](std::size_t part, std::span<const double> from) {
+    const auto to = std::span(moved_).subspan(part * window_.dimensions(), from.size());
+    std::ranges::copy(from, to.begin());
+    return to;
+  };
+  const WaypointValues values{.position = copy(0, given.position),
+                              .velocity = copy(1, given.velocity),
+                              .acceleration = copy(2, given.acceleration)};
+  window_.kinds().continue_from(newest_position(), values);
+  return {.time = given.time,
+          .position = values.position,
+          .velocity = values.velocity,
+          .acceleration = values.acceleration};
+}
+
 Time Plan::settled_until() const noexcept {
   const std::size_t knots = window_.knots();
   if (knots == 0 || !is_on_target()) return origin_.value_or(Time{});
@@ -42,6 +65,13 @@ Time Plan::stop_after_entry(const EnteringAhead& ahead) const noexcept {
   return std::max(length, least_stop_time(window_.limits_at_largest_rate(), window_.kinds(),
                                           {after.end, entry_end_.position(), entry_end_.velocity(),
                                            entry_end_.acceleration()}));
+}
+
+Instant Plan::stop_begin(const EnteringAhead& ahead, std::span<double> scratch) const noexcept {
+  const AfterEntry& after = ahead.after;
+  if (!after.has_line()) return instant_of(after.end, entry_end_);
+  after.write_line_end(entry_end_.position(), entry_end_.velocity(), scratch);
+  return {after.line_end, scratch, entry_end_.velocity(), std::span(kZeros).first(scratch.size())};
 }
 
 bool Plan::starts_from_halt() const noexcept {
@@ -179,8 +209,7 @@ void Plan::note_met() noexcept {
 
 void Plan::rest_at_start() noexcept {
   const Knot first = window_.knot(0);
-  constexpr std::array<double, kMaxDimensions> kRest{};
-  const auto zeros = std::span(kRest).first(window_.dimensions());
+  const auto zeros = std::span(kZeros).first(window_.dimensions());
   end_ = Starting{};
   met_ = window_.knots();
   unmet_ = 1;

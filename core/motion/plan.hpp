@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/motion/end.hpp"
 #include "core/motion/entry_search.hpp"
@@ -82,6 +83,11 @@ class Plan {
   /// the end of the former stop may need longer than the remainder of that.
   [[nodiscard]] Time stop_after_entry(const EnteringAhead& ahead) const noexcept;
 
+  /// The state in which that stop begins: at the end of the straight line, whose position is
+  /// written to `scratch`, D values, or without a line at the end of the entry.
+  [[nodiscard]] Instant stop_begin(const EnteringAhead& ahead,
+                                   std::span<double> scratch) const noexcept;
+
   /// How the curve has been ended; nothing if it continues.
   [[nodiscard]] const std::optional<Ended>& ended() const noexcept { return ended_; }
   [[nodiscard]] EndKind ending() const noexcept { return ended_ ? ended_->kind : EndKind::none; }
@@ -92,6 +98,10 @@ class Plan {
   /// The position that the next waypoint is unwrapped to: that of the newest waypoint of the run,
   /// or of the state that the run was entered from; empty if there is neither.
   [[nodiscard]] std::span<const double> newest_position() const noexcept;
+
+  /// A waypoint, moved to its representative nearest to newest_position(): see DimensionKinds. A
+  /// view, valid until the next call. O(D).
+  [[nodiscard]] Waypoint nearest(const Waypoint& given) noexcept;
 
   /// The time of the run's first knot that has not settled: no append changes the run before it.
   [[nodiscard]] Time settled_until() const noexcept;
@@ -136,6 +146,8 @@ class Plan {
   };
   /// Freezes the curve up to the right end of the segment that contains t.
   Frozen freeze(Time t) noexcept;
+  /// The same, as recorded: freezes the leading `count` knots of the target. The end stays.
+  void freeze_knots(std::size_t count) noexcept { window_.freeze_knots(count); }
 
   /// Lets the curve rest at the first waypoint. Requires is_start_open(), as do the next two.
   void rest_at_start() noexcept;
@@ -191,6 +203,7 @@ class Plan {
   Time blend_until_ = Time::min();
   Time unmet_since_ = Time::max();
   Time refused_until_ = Time::max();
+  std::vector<double> moved_;  ///< of nearest(): position, velocity, acceleration
 };
 
 }  // namespace splinecast::core

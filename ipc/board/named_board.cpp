@@ -1,8 +1,5 @@
 #include "ipc/board/named_board.hpp"
 
-#include <utility>
-
-#include "ipc/mapping/checked_region.hpp"
 #include "ipc/memory/futex.hpp"
 #include "splinecast/errors.hpp"
 
@@ -12,10 +9,7 @@ bool NamedBoard::is_there() noexcept {
   if (board_ && board_->reader.retired()) board_.reset();
   if (board_) return true;
   try {
-    auto [region, header, layout] = open_board(stream_, false, trust_);
-    KnotBoardReader reader(region.bytes(), layout);
-    region.close_descriptor();
-    board_ = Board{std::move(region), header, std::move(reader)};
+    board_.emplace(open_board(stream_, false, trust_));
     return true;
   } catch (const StreamError&) {
     return false;

@@ -5,12 +5,15 @@
 
 #include "ipc/board/reader.hpp"
 #include "ipc/layout/header.hpp"
-#include "ipc/mapping/region.hpp"
+#include "ipc/mapping/checked_region.hpp"
 #include "ipc/memory/word.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/time.hpp"
 
 namespace splinecast::ipc {
+
+/// A knot board of another process.
+using BoardView = RegionView<KnotBoardReader>;
 
 /// The board under a stream's name, for a process that waits for it. One thread uses it.
 class NamedBoard {
@@ -31,15 +34,9 @@ class NamedBoard {
   void wait(Word seen, Time timeout) const noexcept;
 
  private:
-  struct Board {
-    Region region;
-    RegionHeader header;
-    KnotBoardReader reader;
-  };
-
   std::string stream_;
   Trust trust_;
-  std::optional<Board> board_;
+  std::optional<BoardView> board_;
 };
 
 }  // namespace splinecast::ipc

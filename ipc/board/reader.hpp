@@ -9,7 +9,7 @@
 #include "core/solvers/knot_ring.hpp"
 #include "ipc/board/knot.hpp"
 #include "ipc/board/outcome_record.hpp"
-#include "ipc/board/refused_item.hpp"
+#include "ipc/board/refusal_record.hpp"
 #include "ipc/layout/board_control.hpp"
 #include "ipc/layout/common_control.hpp"
 #include "ipc/layout/knot_slots.hpp"
@@ -149,12 +149,12 @@ class KnotBoardReader {
 
   /// Refusal number `index`, counted from 0 over the stream's life. The board has only the last
   /// kRefusalsKept: for an older index, the result is a later refusal.
-  [[nodiscard]] RefusedItem refusal(Word index) const noexcept;
+  [[nodiscard]] RefusalRecord refusal(Word index) const noexcept;
 
   /// Copies refusals that `summary` counts, from number `from` on, oldest first: the newest ones
   /// that fit into `out` and have not been overwritten. Returns how many.
   [[nodiscard]] std::size_t copy_refusals(const Summary& summary, Word from,
-                                          std::span<RefusedItem> out) const noexcept;
+                                          std::span<RefusalRecord> out) const noexcept;
 
   /// Excess number `index` < summary.exceeding; empty if it has been, or is being, overwritten.
   [[nodiscard]] std::optional<LimitExcess> excess(const Summary& summary,

@@ -45,7 +45,7 @@ std::optional<LimitExcess> copy_excess(std::span<const Word> words) noexcept {
 
 }  // namespace
 
-void KnotBoardWriter::write_refusal(Word index, const RefusedItem& refusal) noexcept {
+void KnotBoardWriter::write_refusal(Word index, const RefusalRecord& refusal) noexcept {
   // One word, so that it is never torn; published by the commit of the summary that counts it.
   const bool is_stopped = refusal.reason == Refusal::stopped;
   const Word reason =
@@ -61,7 +61,7 @@ void KnotBoardWriter::write_worst_excess(const LimitExcess& excess) noexcept {
   put_excess(excess, worst_);
 }
 
-RefusedItem KnotBoardReader::refusal(Word index) const noexcept {
+RefusalRecord KnotBoardReader::refusal(Word index) const noexcept {
   const Word word = load(refusals_[index % kRefusalsKept], std::memory_order_acquire);
   const Word item = word >> kRefusalItemShift;
   const Word reason = word & kByteMask;
@@ -72,13 +72,13 @@ RefusedItem KnotBoardReader::refusal(Word index) const noexcept {
 }
 
 std::size_t KnotBoardReader::copy_refusals(const Summary& summary, Word from,
-                                           std::span<RefusedItem> out) const noexcept {
+                                           std::span<RefusalRecord> out) const noexcept {
   const Word wanted = summary.refused - std::min(from, summary.refused);
   const auto most = std::min<Word>({wanted, kRefusalsKept, out.size()});
   Word next = summary.consumed;  // the refusal's item must be before this one
   std::size_t count = 0;
   for (; count < most; ++count) {
-    const RefusedItem item = refusal(summary.refused - 1 - count);
+    const RefusalRecord item = refusal(summary.refused - 1 - count);
     if (item.item >= next) break;  // overwritten, and so are all older ones
     next = item.item;
     out[count] = item;

@@ -12,7 +12,7 @@
 #include "core/solvers/knot_ring.hpp"
 #include "ipc/board/knot.hpp"
 #include "ipc/board/outcome_record.hpp"
-#include "ipc/board/refused_item.hpp"
+#include "ipc/board/refusal_record.hpp"
 #include "ipc/board/table_cells.hpp"
 #include "ipc/layout/board_control.hpp"
 #include "ipc/layout/common_control.hpp"
@@ -122,7 +122,7 @@ class KnotBoardWriter {
   void discard() noexcept;
 
   /// Writes a refusal for the next revision: the `index`-th of the stream, counted from 0.
-  void write_refusal(Word index, const RefusedItem& refusal) noexcept;
+  void write_refusal(Word index, const RefusalRecord& refusal) noexcept;
 
   /// Writes the place where a limit was exceeded: the `index`-th excess of the stream, counted from
   /// 0.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "ipc/mapping/region.hpp"
+#include "ipc/mapping/checked_region.hpp"
 #include "ipc/memory/word.hpp"
 #include "ipc/options/stream.hpp"
 #include "splinecast/errors.hpp"
@@ -43,20 +43,17 @@ RegionHeader header_of_law(const std::string& law, const Trust& trust) {
 }
 
 LawFollower::LawFollower(const RegionHeader& stream, const Trust& trust)
-    : LawFollower(open_law(stream, trust), text_of(stream.law)) {}
+    : LawFollower(BoardView(open_law(stream, trust)), text_of(stream.law)) {}
 
 LawFollower::LawFollower(const std::string& law, const Trust& trust)
-    : LawFollower(open_law(law, trust), law) {}
+    : LawFollower(BoardView(open_law(law, trust)), law) {}
 
-LawFollower::LawFollower(CheckedRegion<BoardLayout> law, std::string name)
+LawFollower::LawFollower(BoardView law, std::string name)
     : name_(std::move(name)),
-      region_(std::move(law.region)),
-      header_(law.header),
-      board_(region_.bytes(), law.layout),
-      sampler_(board_, StreamClock::monotonic),
+      board_(std::move(law)),
+      sampler_(board_.reader, StreamClock::monotonic),
       state_(1) {
   sampler_.follow_retired();
-  region_.close_descriptor();
 }
 
 std::unique_ptr<LawFollower> law_of(const RegionHeader& stream, const Trust& trust) {

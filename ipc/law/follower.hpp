@@ -8,10 +8,8 @@
 #include "core/laws/motion.hpp"
 #include "core/laws/rate_curve.hpp"
 #include "core/polynomial/segment.hpp"
-#include "ipc/board/reader.hpp"
+#include "ipc/board/named_board.hpp"
 #include "ipc/layout/header.hpp"
-#include "ipc/layout/knot_slots.hpp"
-#include "ipc/mapping/checked_region.hpp"
 #include "ipc/memory/word.hpp"
 #include "ipc/sampling/sampler.hpp"
 #include "splinecast/clock.hpp"
@@ -93,7 +91,7 @@ class LawFollower {
   /// The state of the law's curve at a host time, for a time ahead; nothing if it cannot be read.
   [[nodiscard]] std::optional<core::LawState> state_at(Time host) noexcept;
 
-  [[nodiscard]] const RegionHeader& header() const noexcept { return header_; }
+  [[nodiscard]] const RegionHeader& header() const noexcept { return board_.header; }
 
   /// The law never changes before this host time, as the last call saw it.
   [[nodiscard]] Time settled_until() const noexcept { return sampler_.settled_until(); }
@@ -108,13 +106,13 @@ class LawFollower {
   [[nodiscard]] Word revision_seen() const noexcept { return sampler_.revision_seen(); }
 
   /// The newest revision: one load.
-  [[nodiscard]] Word revision() const noexcept { return board_.revision(); }
+  [[nodiscard]] Word revision() const noexcept { return board_.reader.revision(); }
 
   /// The largest rate that the law can have.
-  [[nodiscard]] double largest_rate() const noexcept { return header_.largest_rate; }
+  [[nodiscard]] double largest_rate() const noexcept { return board_.header.largest_rate; }
 
   /// Whether the law has been removed.
-  [[nodiscard]] bool is_lost() const noexcept { return board_.retired(); }
+  [[nodiscard]] bool is_lost() const noexcept { return board_.reader.retired(); }
 
   /// The point that at() found last, and its host time.
   [[nodiscard]] const LawPoint& last() const noexcept { return last_; }
@@ -123,19 +121,17 @@ class LawFollower {
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
  private:
-  LawFollower(CheckedRegion<BoardLayout> law, std::string name);
+  LawFollower(BoardView law, std::string name);
   [[nodiscard]] SampleStatus sample(Time host, bool is_executed, LawPoint& out) noexcept;
   /// Rounding may exceed the bounds that the ramps respect.
   [[nodiscard]] LawPoint point_of(double seconds, core::LawRates rates) const noexcept {
-    rates.rate = within(0, rates.rate, header_.largest_rate);
-    return point_at(seconds, Time(header_.law_origin), rates);
+    rates.rate = within(0, rates.rate, board_.header.largest_rate);
+    return point_at(seconds, Time(board_.header.law_origin), rates);
   }
   [[nodiscard]] SampleStatus convert(SampleStatus status, LawPoint& out) const noexcept;
 
   std::string name_;
-  Region region_;  ///< the law's board
-  RegionHeader header_;
-  KnotBoardReader board_;
+  BoardView board_;  ///< of the law
   Sampler sampler_;
   State state_;
   LawPoint last_{};

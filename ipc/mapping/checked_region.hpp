@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/knot_slots.hpp"
@@ -20,6 +21,24 @@ struct CheckedRegion {
   Region region;
   RegionHeader header{};
   Layout layout;
+};
+
+/// A region of another process that stays mapped. `Reader` reads its layout, and refers to the
+/// mapping: this may be moved.
+template <typename Reader>
+struct RegionView {
+  Region region;
+  RegionHeader header;
+  Reader reader;
+
+  /// Closes the descriptor of the file unless `keeps_descriptor`.
+  template <typename Layout>
+  explicit RegionView(CheckedRegion<Layout> opened, bool keeps_descriptor = false)
+      : region(std::move(opened.region)),
+        header(opened.header),
+        reader(region.bytes(), opened.layout) {
+    if (!keeps_descriptor) region.close_descriptor();
+  }
 };
 
 /// Maps a stream's waypoint ring or its knot board, or the region of a commander or a stopper under

@@ -70,30 +70,25 @@ bool may_follow(const RegionHeader& ring, const RegionHeader& board) {
          board.is_law == 0 && dimensions_of(ring) == dimensions_of(board);
 }
 
-OldEnd::OldEnd(std::string stream, Region region, const RegionHeader& header,
-               const BoardLayout& layout, const RegionHeader& ring, double tolerance)
+OldEnd::OldEnd(std::string stream, BoardView board, const RegionHeader& ring, double tolerance)
     : stream_(std::move(stream)),
-      region_(std::move(region)),
-      header_(header),
-      board_(region_.bytes(), layout),
-      kinds_(dimension_kinds(header)),
-      limits_(window_options(header).limits),
+      board_(std::move(board)),
+      kinds_(dimension_kinds(board_.header)),
+      limits_(window_options(board_.header).limits),
       tolerance_(tolerance),
-      way_(kinds_, header.dimensions),
-      has_same_clock_(header.clock == ring.clock && header.law_id == ring.law_id) {
-  region_.close_descriptor();
-}
+      way_(kinds_, board_.header.dimensions),
+      has_same_clock_(board_.header.clock == ring.clock && board_.header.law_id == ring.law_id) {}
 
 std::optional<OldEnd> OldEnd::find(const std::string& stream, const RegionHeader& ring,
                                    double tolerance, const Trust& trust) {
   if (!is_live(stream_clock(ring))) return std::nullopt;
   try {
     if (!peek_header(stream, RegionKind::spline, trust)) return std::nullopt;
-    auto [region, header, layout] = open_board(stream, false, trust);
-    if (!may_follow(ring, header)) return std::nullopt;
-    OldEnd end(stream, std::move(region), header, layout, ring, tolerance);
-    auto found = end_of_curve(header, end.board_);
-    if (header.stream_id == ring.stream_id) {
+    auto opened = open_board(stream, false, trust);
+    if (!may_follow(ring, opened.header)) return std::nullopt;
+    OldEnd end(stream, BoardView(std::move(opened)), ring, tolerance);
+    auto found = end_of_curve(end.board_.header, end.board_.reader);
+    if (end.board_.header.stream_id == ring.stream_id) {
       if (found.position.empty() || found.is_own) return std::nullopt;
       found.is_final = true;
     }
@@ -112,7 +107,7 @@ void OldEnd::take(CurveEnd end) {
 
 /// Whether no solver will change the old curve any more.
 bool OldEnd::is_final() const noexcept {
-  if (board_.retired()) return true;
+  if (board_.reader.retired()) return true;
   try {
     return !owner_lives(stream_, RegionKind::spline);
   } catch (const std::exception&) {
@@ -124,7 +119,7 @@ OldEnd::Known OldEnd::look() noexcept {
   if (!is_final_) {
     try {
       const bool is_final_now = is_final();  // before the end is read
-      take(end_of_curve(header_, board_));
+      take(end_of_curve(board_.header, board_.reader));
       is_final_ = is_final_ || is_final_now;
     } catch (const std::bad_alloc&) {
       return Known::not_yet;
@@ -174,7 +169,7 @@ std::string OldEnd::why_elsewhere(std::span<const double> position, Time availab
   way_.measure(position_, position);
   std::string text = "the earlier stream '" + stream_ + "' came to rest at " + list_of(position_) +
                      ", this one would begin at " + list_of(position);
-  const std::vector<std::string> names = dimension_names(header_);
+  const std::vector<std::string> names = dimension_names(board_.header);
   for (std::size_t d = 0; d < position.size(); ++d) {
     if (is_reached(d, available, limits)) continue;
     const auto seconds = way_.seconds(d, limits);

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "core/forms/way_between.hpp"
-#include "ipc/board/reader.hpp"
+#include "ipc/board/named_board.hpp"
 #include "ipc/layout/header.hpp"
-#include "ipc/mapping/region.hpp"
 #include "splinecast/dimension_kind.hpp"
 #include "splinecast/limits.hpp"
 #include "splinecast/options.hpp"
@@ -89,8 +88,7 @@ class OldEnd {
                                           const MotionLimits& limits);
 
  private:
-  OldEnd(std::string stream, Region region, const RegionHeader& header, const BoardLayout& layout,
-         const RegionHeader& ring, double tolerance);
+  OldEnd(std::string stream, BoardView board, const RegionHeader& ring, double tolerance);
 
   void take(CurveEnd end);
   [[nodiscard]] bool is_final() const noexcept;
@@ -98,9 +96,7 @@ class OldEnd {
                                 const MotionLimits& limits) const noexcept;
 
   std::string stream_;
-  Region region_;
-  RegionHeader header_;
-  KnotBoardReader board_;
+  BoardView board_;
   DimensionKinds kinds_;
   MotionLimits limits_;
   double tolerance_;

@@ -21,7 +21,7 @@ std::optional<ItemOutcome> refusal_of(const KnotBoardReader& board, const Summar
   Word next = summary.consumed;
   const Word oldest = summary.refused - std::min<Word>(summary.refused, kRefusalsKept);
   for (Word i = summary.refused; i > oldest; --i) {
-    const RefusedItem refused = board.refusal(i - 1);
+    const RefusalRecord refused = board.refusal(i - 1);
     if (refused.item >= next) break;  // overwritten, and so are all older ones
     if (refused.item < item) return std::nullopt;
     if (refused.item == item) {

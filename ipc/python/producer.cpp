@@ -201,7 +201,7 @@ class HeldProducer {
 
   /// A call, as a message describes it.
   struct Asked {
-    RefusedItem item;
+    NotAccepted item;
     std::optional<Time> latest;  ///< its time, or that of its last waypoint
     Waypoint first;              ///< the waypoint that may start the stream, if its position is set
   };
@@ -215,7 +215,7 @@ class HeldProducer {
   template <typename Append>
   std::uint64_t accept(const Asked& asked, py::handle timeout, const Append& append) {
     std::uint64_t number = 0;
-    RefusedItem item = asked.item;
+    NotAccepted item = asked.item;
     const auto try_once = [&](Producer& producer) {
       const AppendStatus status = append(producer);
       if (status == AppendStatus::accepted) number = producer.last_item();
@@ -233,7 +233,7 @@ class HeldProducer {
   }
 
   [[noreturn]] void refuse(const Asked& asked, AppendStatus status) {
-    RefusedItem item = asked.item;
+    NotAccepted item = asked.item;
     item.status = status;
     const bool is_about_now = status == AppendStatus::past || status == AppendStatus::too_far_ahead;
     if (is_about_now && clock_ == StreamClock::monotonic && asked.latest) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ipc/board/refused_item.hpp"
+#include "ipc/board/refusal_record.hpp"
 #include "ipc/layout/board_control.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/summary.hpp"
@@ -27,11 +27,11 @@ struct StreamInfo {
   std::array<Word, kAppendStatuses> refused_by_producer{};  ///< by AppendStatus
   Summary summary;                                          ///< revision 0: nothing solved yet
   std::array<Word, kStepBuckets> step_times{};  ///< steps of the solver that took 2ⁱ to 2ⁱ⁺¹ ns
-  std::optional<MotionLimits> shown;  ///< of a live stream: limits that its motion shows, from
-                                      ///< the waypoints on the board; see ShownMotion
-  std::vector<RefusedItem> refusals;  ///< the last items refused, oldest first: kRefusalsKept,
-                                      ///< fewer if the solver has overwritten some meanwhile
-  std::vector<LimitExcess> excesses;  ///< the last excesses, oldest first: at most kExcessesKept
+  std::optional<MotionLimits> shown;    ///< of a live stream: limits that its motion shows, from
+                                        ///< the waypoints on the board; see ShownMotion
+  std::vector<RefusalRecord> refusals;  ///< the last items refused, oldest first: kRefusalsKept,
+                                        ///< fewer if the solver has overwritten some meanwhile
+  std::vector<LimitExcess> excesses;    ///< the last excesses, oldest first: at most kExcessesKept
   std::optional<LimitExcess> worst_excess;  ///< the largest one of a waypoint that was not refused
   std::vector<StopperEntry> stoppers;       ///< by the board: what is in force
 };

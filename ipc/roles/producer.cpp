@@ -6,12 +6,11 @@
 #include <thread>
 #include <utility>
 
-#include "ipc/board/reader.hpp"
+#include "ipc/board/named_board.hpp"
 #include "ipc/law/follower.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/limits.hpp"
 #include "ipc/layout/summary.hpp"
-#include "ipc/layout/waypoint_items.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/memory/futex.hpp"
@@ -27,7 +26,6 @@
 #include "ipc/roles/internals.hpp"
 #include "ipc/roles/refusals.hpp"
 #include "ipc/roles/replace_preview.hpp"
-#include "ipc/roles/solver_view.hpp"
 #include "ipc/runs/run_edges.hpp"
 #include "splinecast/errors.hpp"
 
@@ -55,7 +53,8 @@ struct Producer::Impl {
   ipc::OwnedRing ring;
   bool continues;
   bool is_first;  ///< no waypoint has been appended to a ring that is continued
-  std::optional<ipc::SolverView> solver;
+  std::optional<ipc::BoardView> solver;              ///< the board of the solver
+  std::unique_ptr<ipc::ReplacementPlanner> planner;  ///< once a replacement has been previewed
   ipc::WaypointRingReader sent;
   ipc::RefusalReader refused;
   ipc::StreamStart start;
@@ -87,7 +86,7 @@ struct Producer::Impl {
       law_clock = std::make_unique<ipc::LawClock>(*law, *clock);
     }
     if (continues) look_for_solver();
-    if (solver) refused.skip(solver->board);
+    if (solver) refused.skip(solver->reader);
   }
 
   /// The header of the law that the options name; one with the stream id 0 if they name none.
@@ -109,15 +108,16 @@ struct Producer::Impl {
   /// Opens the solver's region of this stream, unless it is already open. Closes a retired one.
   /// Leaves `solver` empty if there is no usable region.
   void look_for_solver() noexcept {
-    if (solver && !solver->board.retired()) return;
+    if (solver && !solver->reader.retired()) return;
+    planner.reset();
     solver.reset();
     try {
       // Checks the id first: mapping a large board of an earlier stream each time would be costly.
       const auto peeked = ipc::peek_header(stream, ipc::RegionKind::spline, options.trust);
       if (!peeked || peeked->stream_id != ring.header.stream_id) return;
-      auto [region, header, layout] = ipc::open_board(stream, false, options.trust);
-      if (header.stream_id != ring.header.stream_id) return;
-      solver.emplace(std::move(region), header, layout);
+      auto opened = ipc::open_board(stream, false, options.trust);
+      if (opened.header.stream_id != ring.header.stream_id) return;
+      solver.emplace(std::move(opened));
       refused.restart();
     } catch (const std::exception&) {
       solver.reset();  // missing, or not usable: retried later
@@ -125,7 +125,7 @@ struct Producer::Impl {
   }
 
   [[nodiscard]] ipc::Word consumed() const noexcept {
-    return solver ? solver->board.consumed() : 0;
+    return solver ? solver->reader.consumed() : 0;
   }
 
   /// What is known of the solver's state. If its region is not open, tries to open it.
@@ -137,13 +137,13 @@ struct Producer::Impl {
     if (!law && options.horizon < Time::max()) known.horizon = options.horizon;
     if (!solver) return known;
     known.freeze_ahead = Time(solver->header.freeze_ahead);
-    const ipc::Look look = solver->board.look();
+    const ipc::Look look = solver->reader.look();
     const bool is_time = is_time_in_range(look.settled_until);
     if (look.revision > 0 && is_time) settled_until = look.settled_until;
     known.settled_until = settled_until;
-    known.is_stopped = solver->board.holders() > 0;
+    known.is_stopped = solver->reader.holders() > 0;
     const bool may_refuse = ipc::beyond(solver->header) == Beyond::enter && look.revision > 0;
-    if (may_refuse) known.refused_until = solver->board.refused_until(look.revision);
+    if (may_refuse) known.refused_until = solver->reader.refused_until(look.revision);
     return known;
   }
 
@@ -152,7 +152,7 @@ struct Producer::Impl {
   [[nodiscard]] Time longest_pause() const noexcept {
     constexpr Time kLastSecond = std::chrono::seconds(1);
     ipc::Summary summary;
-    const bool is_known = solver && solver->board.copy_newest_summary(summary) &&
+    const bool is_known = solver && solver->reader.copy_newest_summary(summary) &&
                           stream_clock().now() - summary.committed < kLastSecond;
     return is_known ? std::max(summary.longest_pause, kLeastPause) : kLeastPause;
   }
@@ -177,7 +177,7 @@ struct Producer::Impl {
   AppendStatus append_first(const Waypoint& waypoint,
                             const ipc::WaypointRingWriter::Solved& known) noexcept {
     try {
-      ipc::ContinuedMotion motion(sent, solver->board, solver->header);
+      ipc::ContinuedMotion motion(sent, solver->reader, solver->header);
       return motion.append(waypoint, ring.writer, known);
     } catch (const std::bad_alloc&) {
       return ipc::replace_motion(waypoint, ring.writer, known);
@@ -201,7 +201,7 @@ struct Producer::Impl {
     if (status == AppendStatus::accepted && end >= items) last_item = end - items;
     // Looks again after the store: a solver that attached meanwhile may already sleep.
     if (!solver) look_for_solver();
-    if (status == AppendStatus::accepted && solver && solver->board.sleeping()) {
+    if (status == AppendStatus::accepted && solver && solver->reader.sleeping()) {
       ipc::wake_all(ring.writer.written_word());
       (void)ring.lock.hold();
     }
@@ -216,12 +216,12 @@ struct Producer::Impl {
     for (;;) {
       look_for_solver();
       (void)ring.lock.hold();
-      const ipc::Word seen = solver ? solver->board.revision() : 0;
+      const ipc::Word seen = solver ? solver->reader.revision() : 0;
       if (done()) return true;
       const Time left = end - kClock.now();
       if (left <= Time::zero()) return false;
       if (solver) {
-        (void)ipc::wait_for_change(solver->board.revision_word(), seen, std::min(left, kSlice));
+        (void)ipc::wait_for_change(solver->reader.revision_word(), seen, std::min(left, kSlice));
       } else {
         std::this_thread::sleep_for(std::min(left, kPoll));
       }
@@ -261,10 +261,10 @@ void Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
   out.status = impl_->ring.writer.check_replacement(t, waypoints, known, options.blend);
   out.is_known = false;
   if (out.status != AppendStatus::accepted || !impl_->solver) return;
-  ipc::SolverView& solver = *impl_->solver;
-  if (!solver.planner) {
-    solver.planner = std::make_unique<ipc::ReplacementPlanner>(
-        solver.board, ipc::window_options(solver.header), ipc::dimension_kinds(solver.header),
+  const ipc::BoardView& solver = *impl_->solver;
+  if (!impl_->planner) {
+    impl_->planner = std::make_unique<ipc::ReplacementPlanner>(
+        solver.reader, ipc::window_options(solver.header), ipc::dimension_kinds(solver.header),
         ipc::live_options(solver.header));
   }
   out.begin = std::max(t, ipc::WaypointRingWriter::earliest_replacement(known));
@@ -274,13 +274,13 @@ void Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
     out.from_rest = ipc::begins_at_rest(t, rest, known.settled_until, known.freeze_ahead);
     if (out.from_rest) out.begin = rest;
   }
-  solver.planner->plan(waypoints, options.blend, out);
+  impl_->planner->plan(waypoints, options.blend, out);
 }
 
 std::optional<ReplacementBegin> Producer::replacement_begin() {
   impl_->look_for_solver();
   if (!impl_->replacement || impl_->consumed() <= *impl_->replacement) return std::nullopt;
-  return ipc::begin_of_run(impl_->solver->board, *impl_->replacement);
+  return ipc::begin_of_run(impl_->solver->reader, *impl_->replacement);
 }
 
 AppendStatus Producer::start_from(const Instant& state, const StartOptions& options) noexcept {
@@ -300,7 +300,7 @@ std::string Producer::why_elsewhere(const Waypoint& first) {
 
 std::vector<std::string> Producer::stopped_by() {
   impl_->look_for_solver();
-  return impl_->solver ? ipc::holders_of(impl_->solver->board) : std::vector<std::string>{};
+  return impl_->solver ? ipc::holders_of(impl_->solver->reader) : std::vector<std::string>{};
 }
 
 Time Producer::now() noexcept {
@@ -339,14 +339,14 @@ void Producer::refusals(Refusals& out) {
   impl_->look_for_solver();
   out.items.clear();
   out.missed = out.consumed = 0;
-  if (impl_->solver) impl_->refused.look(impl_->solver->board, impl_->sent, out);
+  if (impl_->solver) impl_->refused.look(impl_->solver->reader, impl_->sent, out);
 }
 
 std::uint64_t Producer::last_item() const noexcept { return impl_->last_item; }
 
 ItemOutcome Producer::outcome(std::uint64_t item) noexcept {
   impl_->look_for_solver();
-  return impl_->solver ? ipc::outcome_of(impl_->solver->board, impl_->sent, item) : ItemOutcome{};
+  return impl_->solver ? ipc::outcome_of(impl_->solver->reader, impl_->sent, item) : ItemOutcome{};
 }
 
 ItemOutcome Producer::wait_outcome(std::uint64_t item, Time timeout) {

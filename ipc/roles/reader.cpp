@@ -7,9 +7,8 @@
 
 #include "core/laws/motion.hpp"
 #include "core/limits/check.hpp"
-#include "ipc/board/reader.hpp"
+#include "ipc/board/named_board.hpp"
 #include "ipc/law/follower.hpp"
-#include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/limits.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
@@ -46,9 +45,7 @@ bool is_of_current_stream(const std::string& stream, const ipc::RegionHeader& he
 
 struct Reader::Impl {
   std::string stream;
-  ipc::Region region;
-  ipc::RegionHeader header;
-  ipc::KnotBoardReader board;
+  ipc::BoardView board;
   ipc::Sampler sampler;
   std::unique_ptr<ipc::LawFollower> law;
   MotionLimits limits;
@@ -69,30 +66,30 @@ struct Reader::Impl {
     if (host > passed && host >= law->settled_until()) passed = MonotonicClock().now();
   }
 
-  Impl(std::string name, ipc::Region mapped, const ipc::RegionHeader& described,
-       const ipc::BoardLayout& layout)
+  Impl(std::string name, ipc::BoardView mapped)
       : stream(std::move(name)),
-        region(std::move(mapped)),
-        header(described),
-        board(region.bytes(), layout),
-        sampler(board, ipc::stream_clock(described), ipc::dimension_kinds(described)),
-        limits(ipc::motion_limits(described)),
-        state(board.dimensions()) {}
+        board(std::move(mapped)),
+        sampler(board.reader, ipc::stream_clock(board.header), ipc::dimension_kinds(board.header)),
+        limits(ipc::motion_limits(board.header)),
+        state(board.reader.dimensions()) {}
 
   /// Maps the stream's board; returns null if there is none now.
   static std::unique_ptr<Impl> open(const std::string& stream, const Trust& trust) {
     if (!ipc::region_exists(stream, ipc::RegionKind::spline)) return nullptr;
     try {
-      auto [region, header, layout] = ipc::open_board(stream, false, trust);
+      constexpr bool kKeepsDescriptor = true;  // alive() reads the lock of the region
+      ipc::BoardView board(ipc::open_board(stream, false, trust), kKeepsDescriptor);
+      const ipc::RegionHeader& header = board.header;
       const bool is_current = is_of_current_stream(stream, header, trust);
       if (is_current) ipc::require_same_clock(header, stream);
-      auto impl = std::make_unique<Impl>(stream, std::move(region), header, layout);
+      auto impl = std::make_unique<Impl>(stream, std::move(board));
+      const ipc::RegionHeader& described = impl->board.header;
       // A motion that has not ended moves the machine, also if a newer stream waits for its end.
-      const bool may_move =
-          is_current || ipc::end_of_motion(header, impl->board, trust) > MonotonicClock().now();
+      const bool may_move = is_current || ipc::end_of_motion(described, impl->board.reader, trust) >
+                                              MonotonicClock().now();
       if (!may_move) return nullptr;
-      if (header.law_id != 0) impl->law = std::make_unique<ipc::LawFollower>(header, trust);
-      return impl->board.retired() ? nullptr : std::move(impl);
+      if (described.law_id != 0) impl->law = std::make_unique<ipc::LawFollower>(described, trust);
+      return impl->board.reader.retired() ? nullptr : std::move(impl);
     } catch (const LawLost&) {
       throw;
     } catch (const NoSuchStream&) {
@@ -117,7 +114,7 @@ Reader::Reader(const std::string& stream, Time wait, const Trust& trust)
     : impl_((ipc::require_stream_name(stream), Impl::await(stream, wait, trust))),
       sampler_(&impl_->sampler),
       follows_law_(impl_->law != nullptr),
-      dimensions_(impl_->board.dimensions()) {}
+      dimensions_(impl_->board.reader.dimensions()) {}
 Reader::Reader(Reader&&) noexcept = default;
 Reader& Reader::operator=(Reader&&) noexcept = default;
 Reader::~Reader() = default;
@@ -201,7 +198,7 @@ std::uint64_t Reader::follow_many(std::span<const Time> times, const SampleBlock
 Time Reader::settled_until() const noexcept {
   if (!follows_law_) return sampler_->settled_until();
   const Time final_until = impl_->final_until();
-  return std::min(final_until, impl_->board.look().settled_until);
+  return std::min(final_until, impl_->board.reader.look().settled_until);
 }
 
 SampleStatus Reader::snapshot(Time from, Time to, Snapshot& out) {
@@ -233,7 +230,7 @@ std::optional<Time> Reader::first_time() const noexcept {
        ++attempt) {
     core::SegmentForm form{};
     Time first{};
-    if (impl_->board.copy_time(bounds.first, bounds.revision, first, form)) return first;
+    if (impl_->board.reader.copy_time(bounds.first, bounds.revision, first, form)) return first;
   }
   return std::nullopt;
 }
@@ -243,15 +240,16 @@ WaitStatus Reader::wait(Time timeout) noexcept {
   const Time end = deadline(clock, timeout);
   impl_->seen = std::max(impl_->seen, impl_->sampler.revision_seen());
   for (;;) {
-    if (impl_->board.retired()) return WaitStatus::retired;
-    const ipc::Word revision = impl_->board.revision();
+    if (impl_->board.reader.retired()) return WaitStatus::retired;
+    const ipc::Word revision = impl_->board.reader.revision();
     if (revision != impl_->seen) {
       impl_->seen = revision;
       return WaitStatus::advanced;
     }
     const Time left = end - clock.now();
     if (left <= Time::zero()) return WaitStatus::timed_out;
-    (void)ipc::wait_for_change(impl_->board.revision_word(), revision, std::min(left, kSlice));
+    (void)ipc::wait_for_change(impl_->board.reader.revision_word(), revision,
+                               std::min(left, kSlice));
   }
 }
 
@@ -264,8 +262,8 @@ Alive Reader::alive() const noexcept {
     }
   };
   return {.producer = may_live(ipc::RegionKind::waypoints),
-          .solver = ipc::region_owner_lives(impl_->region.descriptor()) ||
-                    (impl_->region.is_linked(impl_->stream, ipc::RegionKind::spline) &&
+          .solver = ipc::region_owner_lives(impl_->board.region.descriptor()) ||
+                    (impl_->board.region.is_linked(impl_->stream, ipc::RegionKind::spline) &&
                      may_live(ipc::RegionKind::spline))};
 }
 
@@ -276,22 +274,22 @@ Excess Reader::excess(const State& sampled) const noexcept {
   return core::worst_excess(impl_->limits, &sampler_->kinds(), sampled);
 }
 
-StreamClock Reader::clock() const noexcept { return ipc::stream_clock(impl_->header); }
-std::vector<std::string> Reader::names() const { return ipc::dimension_names(impl_->header); }
-DimensionKinds Reader::kinds() const { return ipc::dimension_kinds(impl_->header); }
-std::vector<std::string> Reader::units() const { return ipc::dimension_units(impl_->header); }
-bool Reader::is_memory_locked() const noexcept { return impl_->region.is_memory_locked(); }
+StreamClock Reader::clock() const noexcept { return ipc::stream_clock(impl_->board.header); }
+std::vector<std::string> Reader::names() const { return ipc::dimension_names(impl_->board.header); }
+DimensionKinds Reader::kinds() const { return ipc::dimension_kinds(impl_->board.header); }
+std::vector<std::string> Reader::units() const { return ipc::dimension_units(impl_->board.header); }
+bool Reader::is_memory_locked() const noexcept { return impl_->board.region.is_memory_locked(); }
 
 namespace ipc {
 
 ipc::Sampler& ipc::Internals::sampler(Reader& reader) noexcept { return *reader.sampler_; }
 
 const ipc::RegionHeader& ipc::Internals::header(const Reader& reader) noexcept {
-  return reader.impl_->header;
+  return reader.impl_->board.header;
 }
 
 bool ipc::Internals::summary(const Reader& reader, ipc::Summary& out) noexcept {
-  return reader.impl_->board.copy_newest_summary(out);
+  return reader.impl_->board.reader.copy_newest_summary(out);
 }
 
 }  // namespace ipc

@@ -27,7 +27,7 @@ void RefusalReader::look(const KnotBoardReader& board, const WaypointRingReader&
   const std::size_t count = board.copy_refusals(summary_, seen_, copied_);
   out.missed = summary_.refused - seen_ - count;
   seen_ = summary_.refused;
-  for (const RefusedItem& refused : std::span(copied_).first(count)) {
+  for (const RefusalRecord& refused : std::span(copied_).first(count)) {
     if (refused.item < first_) continue;
     out.items.push_back(
         {.item = refused.item, .time = ring.observe_time(refused.item), .reason = refused.reason});

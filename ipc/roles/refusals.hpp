@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "ipc/board/reader.hpp"
-#include "ipc/board/refused_item.hpp"
+#include "ipc/board/refusal_record.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/ring/reader.hpp"
@@ -34,7 +34,7 @@ class RefusalReader {
   Summary summary_;  ///< as last seen
   Word seen_ = 0;    ///< refusals reported, over the stream's life
   Word first_;
-  std::vector<RefusedItem> copied_;
+  std::vector<RefusalRecord> copied_;
 };
 
 }  // namespace splinecast::ipc

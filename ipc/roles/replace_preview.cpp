@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
+#include "core/forms/instant.hpp"
 #include "core/forms/stop.hpp"
 #include "core/limits/extremes.hpp"
-#include "core/limits/limit_of.hpp"
 #include "ipc/layout/summary.hpp"
 
 namespace splinecast::ipc {
 namespace {
 
 constexpr int kTries = 16;
+constexpr int kAllCandidates = 1000;
 
 void clear(MotionPeaks& peaks, std::size_t dimensions) {
   peaks.velocity.assign(dimensions, 0);
@@ -37,21 +37,18 @@ void take_peaks(const core::SegmentPart& part, MotionPeaks& peaks) {
 
 }  // namespace
 
-ReplacementPlanner::ReplacementPlanner(const KnotBoardReader& board, core::WindowOptions options,
-                                       DimensionKinds kinds, const std::optional<LiveOptions>& live)
+ReplacementPlanner::ReplacementPlanner(const KnotBoardReader& board,
+                                       const core::WindowOptions& options,
+                                       const DimensionKinds& kinds,
+                                       const std::optional<LiveOptions>& live)
     : board_(&board),
-      options_(std::move(options)),
-      kinds_(std::move(kinds)),
-      min_entry_(live ? live->min_entry : Time::zero()),
-      is_live_(live.has_value()),
-      sampler_(board, is_live_ ? StreamClock::monotonic : StreamClock::recorded, kinds_),
+      sampler_(board, live ? StreamClock::monotonic : StreamClock::recorded, kinds),
       shown_(board),
-      window_(board.dimensions(), core::with_kinds(options_, kinds_)),
-      search_(board.dimensions(), kinds_),
-      reach_(board.dimensions()),
+      plan_(board.dimensions(), core::with_kinds(options, kinds)),
+      search_(board.dimensions(), plan_.window().options(),
+              {.is_live = live.has_value(), .min_entry = live ? live->min_entry : Time::zero()}),
       state_(board.dimensions()),
-      segment_(board.dimensions()),
-      values_(3 * board.dimensions()) {}
+      segment_(board.dimensions()) {}
 
 /// Reads the state at t and the shown motion before t. Returns false if the board has no state at t
 /// or the writer overtook every try.
@@ -60,7 +57,6 @@ bool ReplacementPlanner::read_state(Time t) {
   Summary summary;
   for (int i = 0; i < kTries; ++i) {
     if (!board_->copy_summary(board_->look(), summary)) continue;
-    window_.begin_run();
     shown_.restore(*board_, summary, Time::max());
     shown_.replace_from_next();
     return true;
@@ -68,37 +64,18 @@ bool ReplacementPlanner::read_state(Time t) {
   return false;
 }
 
-/// Appends a waypoint as its representative nearest to the one before, as the solver does.
-void ReplacementPlanner::append(const Waypoint& waypoint) {
-  const std::size_t dimensions = window_.dimensions();
-  const auto copy = [&](std::size_t part, std::span<const double> from) {
-    const auto to = std::span(values_).subspan(part * dimensions, from.size());
-    std::ranges::copy(from, to.begin());
-    return to;
-  };
-  const WaypointValues values{.position = copy(0, waypoint.position),
-                              .velocity = copy(1, waypoint.velocity),
-                              .acceleration = copy(2, waypoint.acceleration)};
-  const std::size_t knots = window_.knots();
-  kinds_.continue_from(knots > 0 ? window_.knot(knots - 1).waypoint : state_.position(), values);
-  window_.append({.time = waypoint.time,
-                  .position = values.position,
-                  .velocity = values.velocity,
-                  .acceleration = values.acceleration});
-  if (is_live_) shown_.note(waypoint.time, values.position);
-}
-
 void ReplacementPlanner::take(const core::Segment& segment, MotionPeaks* entry,
                               ReplacePreview& out) const {
   const core::SegmentPart part = core::part_of(segment);
   take_peaks(part, out.motion);
   if (entry != nullptr) take_peaks(part, *entry);
-  const Excess excess = core::worst_excess(options_.limits, &kinds_, part);
+  const core::SlidingWindow& window = plan_.window();
+  const Excess excess = core::worst_excess(window.options().limits, &window.kinds(), part);
   if (excess.ratio > out.worst.ratio) out.worst = excess;
 }
 
 void ReplacementPlanner::take_stop(ReplacePreview& out, const Instant& from) {
-  const Time length = core::build_stop_within(window_.stop_rules(), from, segment_);
+  const Time length = core::build_stop_within(plan_.window().stop_rules(), from, segment_);
   take(segment_, out.enters ? nullptr : &out.entry, out);
   if (!out.enters) out.duration = length;
 }
@@ -115,8 +92,8 @@ void ReplacementPlanner::take_entry(ReplacePreview& out) {
     next_segment_ = *end.knot;
     return;
   }
-  const std::size_t knots = window_.knots();
-  const bool meets_last = end.state.time == window_.time(knots - 1);
+  const std::size_t knots = plan_.window().knots();
+  const bool meets_last = end.state.time == plan_.newest_time();
   if (meets_last) out.waypoint = knots - 1;
   out.passed_over = knots - (meets_last ? 1 : 0);
   take_stop(out, end.state);  // the straight line before the stop adds no peaks
@@ -125,68 +102,61 @@ void ReplacementPlanner::take_entry(ReplacePreview& out) {
 /// Adds the target's segments after the entry, up to number `end`, before they leave the window.
 void ReplacementPlanner::take_segments(std::size_t end, ReplacePreview& out) {
   for (; next_segment_ && *next_segment_ < end; ++*next_segment_) {
-    window_.segment(*next_segment_, segment_);
+    plan_.window().segment(*next_segment_, segment_);
     take(segment_, nullptr, out);
   }
 }
 
+/// Searches for the plan's entry and adds it. `is_last`: no newer waypoints come.
+bool ReplacementPlanner::search(bool is_last, ReplacePreview& out) {
+  const bool is_live = search_.options().is_live;
+  if (is_live) shown_.look(plan_.window().options().stop_time);
+  int tries = kAllCandidates;
+  const core::EntryBegin from{plan_.origin(), is_live ? &shown_.limits() : nullptr};
+  if (search_.search(plan_, from, is_last, tries) != core::PlanSearch::Outcome::found) return false;
+  take_entry(out);
+  plan_.enter(search_.end(), std::nullopt);
+  return true;
+}
+
 /// Appends the waypoints and searches for an entry after each, as the solver does; then once more,
 /// as if no newer waypoints come.
-bool ReplacementPlanner::find_entry(const Instant& from, std::span<const Waypoint> waypoints,
-                                    Time blend, ReplacePreview& out) {
-  core::EntryRules rules{.limits = &window_.limits_at_largest_rate(),
-                         .path_limits = &options_.limits,
-                         .shown = is_live_ ? &shown_.limits() : nullptr,
-                         .least = std::max(min_entry_, blend),
-                         .newer = options_.settle,
-                         .reach = &reach_};
-  (void)core::build_stop_within(window_.stop_rules(), from, segment_);
-  reach_.restart(from.position);
-  reach_.add(core::part_of(segment_));
-  bool is_found = false;
-  const auto search = [&] {
-    constexpr int kAll = 1000;
-    int tries = kAll;
-    if (is_live_) shown_.look(options_.stop_time);
-    is_found = search_.search(window_, from, rules, tries) == core::EntrySearch::Outcome::found;
-    if (!is_found) return;
-    take_entry(out);
-    if (out.waypoint && next_segment_) window_.freeze_knots(*out.waypoint + 1);
-  };
-  search_.restart(0);
+bool ReplacementPlanner::find_entry(std::span<const Waypoint> waypoints, ReplacePreview& out) {
+  (void)core::build_stop_within(plan_.window().stop_rules(), plan_.origin(), segment_);
+  search_.reach().restart(plan_.origin().position);
+  search_.reach().add(core::part_of(segment_));
+  search_.restart(plan_);
   next_segment_.reset();
-  for (const Waypoint& waypoint : waypoints) {
-    append(waypoint);
-    if (!is_found) search();
-    take_segments(window_.settled_segments(), out);
+  bool is_found = false;
+  for (const Waypoint& given : waypoints) {
+    const Waypoint waypoint = plan_.nearest(given);
+    plan_.append(waypoint);
+    if (search_.options().is_live) shown_.note(waypoint.time, waypoint.position);
+    is_found = is_found || search(false, out);
+    take_segments(plan_.window().settled_segments(), out);
   }
-  if (!is_found && !waypoints.empty() && is_live_) {
-    rules.goes_beyond = true;
-    rules.newer = 0;
-    search();
-  }
-  take_segments(window_.segments(), out);
+  if (!is_found && !waypoints.empty() && search_.options().is_live) is_found = search(true, out);
+  take_segments(plan_.window().segments(), out);
   return is_found;
 }
 
 void ReplacementPlanner::plan(std::span<const Waypoint> waypoints, Time blend,
                               ReplacePreview& out) {
+  const std::size_t dimensions = plan_.window().dimensions();
   out.is_known = read_state(out.begin);
-  if (out.from_rest) come_to_rest(state_);
-  core::clamp_acceleration(window_.limits_at_largest_rate(), kinds_, state_.velocity(),
-                           state_.ref().acceleration);
   out.duration = {};
   out.enters = false;
   out.waypoint.reset();
   out.passed_over = 0;
   out.worst = {};
-  clear(out.entry, window_.dimensions());
-  clear(out.motion, window_.dimensions());
+  clear(out.entry, dimensions);
+  clear(out.motion, dimensions);
   if (!out.is_known) return;
-  const Instant from{out.begin, state_.position(), state_.velocity(), state_.acceleration()};
-  if (find_entry(from, waypoints, blend, out)) return;
+  if (out.from_rest) come_to_rest(state_);
+  plan_.cut(core::instant_of(out.begin, state_), blend);
+  if (find_entry(waypoints, out)) return;
   out.passed_over = waypoints.size();
-  take_stop(out, from);
+  take_stop(out, plan_.origin());
 }
 
 std::optional<ReplacementBegin> begin_of_run(const KnotBoardReader& board, Word item) {
@@ -194,11 +164,11 @@ std::optional<ReplacementBegin> begin_of_run(const KnotBoardReader& board, Word 
   if (!board.copy_newest_summary(summary) || summary.consumed <= item || summary.newest == 0) {
     return std::nullopt;
   }
-  std::array<RefusedItem, kRefusalsKept> refused;  // NOLINT(*-member-init)
+  std::array<RefusalRecord, kRefusalsKept> refused;  // NOLINT(*-member-init)
   const Word kept = std::min<Word>(summary.refused, kRefusalsKept);
   const std::size_t count = board.copy_refusals(summary, summary.refused - kept, refused);
   const auto known = std::span(refused).first(count);
-  const bool is_refused = std::ranges::find(known, item, &RefusedItem::item) != known.end();
+  const bool is_refused = std::ranges::find(known, item, &RefusalRecord::item) != known.end();
   if (is_refused) return std::nullopt;
   KnotCopy knot(board.dimensions(), board.smooths());
   if (!board.copy_knot(summary.run, summary.revision, knot)) return std::nullopt;

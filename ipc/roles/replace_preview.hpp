@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "core/limits/check.hpp"
-#include "core/motion/entry_search.hpp"
+#include "core/motion/plan.hpp"
+#include "core/motion/plan_search.hpp"
 #include "core/online/sliding_window.hpp"
 #include "ipc/board/reader.hpp"
 #include "ipc/sampling/sampler.hpp"
@@ -27,8 +27,8 @@ class ReplacementPlanner {
  public:
   /// `board` outlives the planner; the other arguments are those of its solver; `live` is set for a
   /// live stream.
-  ReplacementPlanner(const KnotBoardReader& board, core::WindowOptions options,
-                     DimensionKinds kinds, const std::optional<LiveOptions>& live);
+  ReplacementPlanner(const KnotBoardReader& board, const core::WindowOptions& options,
+                     const DimensionKinds& kinds, const std::optional<LiveOptions>& live);
 
   /// Plans the replacement of everything after out.begin by these waypoints, which the ring would
   /// accept; with out.from_rest it begins at rest there. O(n·K·D) and at most 170 candidates of an
@@ -37,28 +37,21 @@ class ReplacementPlanner {
 
  private:
   [[nodiscard]] bool read_state(Time t);
-  [[nodiscard]] bool find_entry(const Instant& from, std::span<const Waypoint> waypoints,
-                                Time blend, ReplacePreview& out);
+  [[nodiscard]] bool search(bool is_last, ReplacePreview& out);
+  [[nodiscard]] bool find_entry(std::span<const Waypoint> waypoints, ReplacePreview& out);
   void take_segments(std::size_t end, ReplacePreview& out);
-  void append(const Waypoint& waypoint);
   void take(const core::Segment& segment, MotionPeaks* entry, ReplacePreview& out) const;
   void take_stop(ReplacePreview& out, const Instant& from);
   void take_entry(ReplacePreview& out);
 
   const KnotBoardReader* board_;
-  core::WindowOptions options_;
-  DimensionKinds kinds_;
-  Time min_entry_;
-  bool is_live_;
   Sampler sampler_;
   ShownMotion shown_;
-  core::SlidingWindow window_;
-  core::EntrySearch search_;
-  core::PositionRange reach_;                ///< of the stop from where the entry begins
+  core::Plan plan_;
+  core::PlanSearch search_;
   std::optional<std::size_t> next_segment_;  ///< the next segment of the target to add
-  State state_;
-  core::Segment segment_;
-  std::vector<double> values_;  ///< of a waypoint: position, velocity, acceleration
+  State state_;                              ///< scratch
+  core::Segment segment_;                    ///< scratch
 };
 
 /// Where the newest run on a board begins, if the solver took the replacement of this item, and the

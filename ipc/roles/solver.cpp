@@ -23,7 +23,6 @@
 #include "ipc/roles/internals.hpp"
 #include "ipc/roles/law_server.hpp"
 #include "ipc/roles/refusals.hpp"
-#include "ipc/roles/solver_view.hpp"
 #include "ipc/roles/solver_watch.hpp"
 #include "ipc/solve/stream_solver.hpp"
 #include "splinecast/errors.hpp"
@@ -46,9 +45,12 @@ constexpr Time kLookEvery = std::chrono::milliseconds(1);
 /// How often the solver of a stream whose law holds looks at the law.
 constexpr Time kHeldPoll = std::chrono::milliseconds(5);
 
+/// The region of the producer.
+using RingView = ipc::RegionView<ipc::WaypointRingReader>;
+
 /// What a solver owns while it is attached.
 struct Attachment {
-  ipc::RingView ring;
+  RingView ring;
   ipc::OwnedBoard board;
   ipc::StreamSolver solver;
   std::unique_ptr<ipc::Stoppers> stoppers;  ///< of a live stream that is not a law
@@ -61,10 +63,10 @@ struct Attachment {
   bool is_excess_told = false;
   std::array<bool, ipc::kRefusalReasons> told{};  ///< by Refusal
 
-  Attachment(ipc::RingView producer, ipc::OwnedBoard own)
+  Attachment(RingView producer, ipc::OwnedBoard own)
       : ring(std::move(producer)),
         board(std::move(own)),
-        solver(ring.ring, board.writer, board.reader, ipc::window_options(board.header),
+        solver(ring.reader, board.writer, board.reader, ipc::window_options(board.header),
                ipc::ingest_limits(ring.header), ipc::dimension_kinds(ring.header),
                ipc::live_options(board.header), ipc::beyond(board.header)),
         refusals_seen(solver.summary().refused),
@@ -177,10 +179,10 @@ struct Solver::Impl {
   }
 
   bool attach(const Clock& clock) {
-    auto [region, header, layout] = ipc::open_ring(stream, false, options.trust);
+    RingView ring(ipc::open_ring(stream, false, options.trust));
+    const ipc::RegionHeader& header = ring.header;
     ipc::require_same_clock(header, stream);
-    ipc::RingView ring(std::move(region), header, layout);
-    if (ring.ring.retired()) return false;
+    if (ring.reader.retired()) return false;
     std::unique_ptr<ipc::LawFollower> law;
     if (header.law_id != 0 && !find_law(header, clock, law)) {
       next_attach = clock.now() + kPoll;
@@ -253,7 +255,7 @@ StepResult Solver::step(const Clock& clock) {
     (void)at.board.lock.hold();
   }
   const bool is_idle = result.consumed == 0 && !result.missed && !at.solver.is_postponed();
-  if (is_idle && at.ring.ring.retired()) {
+  if (is_idle && at.ring.reader.retired()) {
     impl_->attachment.reset();
     impl_->server.reset();
   }
@@ -281,14 +283,14 @@ void Solver::wait(Time timeout) noexcept {
   // load of sleeping: either this load sees the new position, or the producer sees that this solver
   // must be woken.
   at.board.writer.store_sleeping(true);
-  const ipc::Word written = at.ring.ring.written(std::memory_order_seq_cst);
+  const ipc::Word written = at.ring.reader.written(std::memory_order_seq_cst);
   const Time due = this->due();
   const Time now = due < Time::max() ? MonotonicClock().now() : Time::zero();
-  if (written == at.solver.seen() && due > now && !at.ring.ring.retired()) {
+  if (written == at.solver.seen() && due > now && !at.ring.reader.retired()) {
     const Time slice = at.stoppers && at.stoppers->is_used() ? kSliceOfStopped : kSlice;
     const Time most = std::min({timeout, slice, due - now});
     if (!impl_->server) {
-      ipc::wait_while_equal(at.ring.ring.written_word(), written, most);
+      ipc::wait_while_equal(at.ring.reader.written_word(), written, most);
       impl_->next_look = Time::min();
     } else {
       impl_->server->commanders().wait(most);
@@ -303,7 +305,7 @@ void Solver::take_first_refusals(std::vector<ItemRefusal>& out) {
   Attachment& at = *impl_->attachment;
   if (at.solver.summary().refused == at.refusals_seen) return;
   at.refusals_seen = at.solver.summary().refused;
-  at.refusals.look(at.board.reader, at.ring.ring, at.refused);
+  at.refusals.look(at.board.reader, at.ring.reader, at.refused);
   for (const ItemRefusal& refusal : at.refused.items) {
     bool& told = at.told[static_cast<std::size_t>(refusal.reason) % at.told.size()];
     if (!told) out.push_back(refusal);
@@ -368,7 +370,7 @@ void ipc::Internals::prefetch(const Solver& solver, Stage stage) noexcept {
   if (!solver.attached()) return;
   const Attachment& at = *solver.impl_->attachment;
   if (stage == Stage::parts) {
-    ipc::prefetch_lines(&at.ring.ring, sizeof(at.ring.ring));
+    ipc::prefetch_lines(&at.ring.reader, sizeof(at.ring.reader));
     ipc::prefetch_lines(&at.board.writer, sizeof(at.board.writer));
     ipc::prefetch_lines(&at.board.reader, sizeof(at.board.reader));
     ipc::prefetch_lines(&at.solver, sizeof(at.solver));
@@ -381,12 +383,12 @@ ipc::SolverWatch ipc::Internals::watch(const Solver& solver) noexcept {
   const Attachment& at = *solver.impl_->attachment;
   const ipc::LawServer* const server = solver.impl_->server.get();
   if (server == nullptr) {
-    return {at.ring.ring.polled(), at.solver.seen(), solver.due(), at.solver.settled_raise(),
+    return {at.ring.reader.polled(), at.solver.seen(), solver.due(), at.solver.settled_raise(),
             at.stoppers ? &at.stoppers->regions() : nullptr};
   }
   // A step of a law also looks for commanders: raising the settled time does not replace it.
   return {
-      at.ring.ring.polled(), at.solver.seen(), solver.due(), {}, &server->commanders().regions()};
+      at.ring.reader.polled(), at.solver.seen(), solver.due(), {}, &server->commanders().regions()};
 }
 
 }  // namespace ipc

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 
 #include "core/laws/law_path.hpp"
 #include "core/limits/check.hpp"
@@ -30,7 +31,7 @@ void StreamSolver::take(Word number) noexcept {
     return item_.kind == ItemKind::replace ? refuse_replacement(number, Refusal::stopped)
                                            : refuse(number, Refusal::stopped);
   }
-  if (number == unsound_item_) {
+  if (number == unsound_.item) {
     return item_.kind == ItemKind::replace ? refuse_replacement(number, Refusal::not_finite)
                                            : refuse(number, Refusal::not_finite);
   }
@@ -51,20 +52,20 @@ void StreamSolver::take(Word number) noexcept {
 
 /// Where a replacement from t on cuts the curve: never too late.
 Time StreamSolver::time_of_cut(Time t) const noexcept {
-  return std::max({t, settled_until_, curve_.earliest_cut()});
+  return std::max({t, step_.settled_until, curve_.earliest_cut()});
 }
 
 /// Whether the law holds the stream where the curve can be cut.
 bool StreamSolver::can_rest() const noexcept {
-  return rest_ && curve_.has_begun() && *rest_ >= curve_.earliest_cut();
+  return step_.rest && curve_.has_begun() && *step_.rest >= curve_.earliest_cut();
 }
 
 /// Cuts the curve at t and begins a run there: from rest where the law holds, instead of what has
 /// settled after it.
 void StreamSolver::begin_run(Time t, const RunBegin& how) noexcept {
   outcomes_.cut(curve_.progress(), t);
-  if (how.is_from_rest) settled_until_ = t;
-  rests_ = rests_ || how.is_from_rest;
+  if (how.is_from_rest) step_.settled_until = t;
+  step_.rests = step_.rests || how.is_from_rest;
   curve_.begin_run(t, how);
   summary_.starved = false;
   summary_.newest_time = t;
@@ -72,10 +73,10 @@ void StreamSolver::begin_run(Time t, const RunBegin& how) noexcept {
 
 /// Ends a stop that is executed when the law holds the machine.
 void StreamSolver::rest_where_held() noexcept {
-  if (!can_rest() || *rest_ > settled_until_ || summary_.finished) return;
-  const Time latest = latest_from_rest(*rest_, settled_until_, live_->freeze_ahead);
-  if (curve_.is_stopping(*rest_, latest))
-    begin_run(*rest_, {.has_waypoints = false, .is_from_rest = true});
+  if (!can_rest() || *step_.rest > step_.settled_until || summary_.finished) return;
+  const Time latest = latest_from_rest(*step_.rest, step_.settled_until, live_->freeze_ahead);
+  if (curve_.is_stopping(*step_.rest, latest))
+    begin_run(*step_.rest, {.has_waypoints = false, .is_from_rest = true});
 }
 
 /// Reads what the stoppers request. If one holds the stream and the curve does not stop yet, begins
@@ -86,8 +87,8 @@ bool StreamSolver::stops_where_held() noexcept {
   summary_.holders = stops_.holders();
   summary_.holder = stops_.holder();
   if (!is_held() || !curve_.has_begun() || summary_.finished) return false;
-  const bool rests = can_rest() && *rest_ <= settled_until_;
-  const Time t = rests ? *rest_ : time_of_cut(Time::min());
+  const bool rests = can_rest() && *step_.rest <= step_.settled_until;
+  const Time t = rests ? *step_.rest : time_of_cut(Time::min());
   if (curve_.is_stop() && t >= curve_.plan().newest_time()) return false;
   summary_.cut_off += curve_.waypoints_after(t);
   begin_run(t, {.has_waypoints = false,
@@ -101,13 +102,13 @@ bool StreamSolver::stops_where_held() noexcept {
 void StreamSolver::begin_where_left() noexcept {
   const bool is_start_lost = summary_.reasons[static_cast<std::size_t>(Refusal::stopped)] > 0;
   if (curve_.has_begun() || !is_start_lost) return;
-  const auto part = [this](std::size_t i) {
-    return std::span(unwrapped_).subspan(i * ring_->dimensions(), ring_->dimensions());
-  };
-  std::ranges::fill(unwrapped_, 0.0);
-  if (!published_->copy_old_end(part(0))) return;
-  curve_.begin({settled_until_, part(0), part(1), part(2)});
-  summary_.newest_time = settled_until_;
+  constexpr std::array<double, kMaxDimensions> kZeros{};
+  std::array<double, kMaxDimensions> place{};
+  const auto position = std::span(place).first(ring_->dimensions());
+  const auto zeros = std::span(kZeros).first(ring_->dimensions());
+  if (!published_->copy_old_end(position)) return;
+  curve_.begin({step_.settled_until, position, zeros, zeros});
+  summary_.newest_time = step_.settled_until;
 }
 
 /// The reason to refuse the values of a waypoint, if any. The producer has checked most of them,
@@ -126,12 +127,12 @@ std::optional<Refusal> StreamSolver::time_refusal(Time time) const noexcept {
     // The producer has compared only the first waypoint with the end of an earlier stream.
     const bool is_start_lost = summary_.reasons[static_cast<std::size_t>(Refusal::past)] > 0;
     if (is_start_lost && published_->has_old_end()) return Refusal::past;
-    return time < settled_until_ ? std::optional(Refusal::past) : std::nullopt;
+    return time < step_.settled_until ? std::optional(Refusal::past) : std::nullopt;
   }
   const Time newest = curve_.plan().newest_time();
   // A run may begin after the time of its first waypoints, or less than an interval before it.
   if (curve_.is_stop() && time - newest < limits_.min_interval) return std::nullopt;
-  const Time earliest = is_starved() ? settled_until_ : newest;
+  const Time earliest = is_starved() ? step_.settled_until : newest;
   const auto status = judge_interval(time - newest, limits_);
   if (status == AppendStatus::too_far_apart && time - earliest > limits_.max_interval) {
     return Refusal::too_far_apart;
@@ -139,7 +140,7 @@ std::optional<Refusal> StreamSolver::time_refusal(Time time) const noexcept {
   if (status != AppendStatus::accepted && status != AppendStatus::too_far_apart) {
     return to_refusal(status);
   }
-  const bool is_late = is_starved() && time < settled_until_ - kMostLate;
+  const bool is_late = is_starved() && time < step_.settled_until - kMostLate;
   if (is_late && !curve_.begins_after(time)) return Refusal::past;
   return curve_.window().lag_suffices(time) ? std::nullopt : std::optional(Refusal::lag_too_short);
 }
@@ -150,47 +151,31 @@ void StreamSolver::take_waypoint(Word number) noexcept {
   if (const auto refusal = time_refusal(waypoint.time)) return refuse(number, *refusal);
   begin_where_left();
   if (!curve_.kinds().all_linear()) {
-    waypoint = unwrapped(waypoint);
+    waypoint = curve_.nearest(waypoint);
     if (!is_finite(waypoint)) return refuse(number, Refusal::not_finite);
   }
   if (const auto refusal = append(waypoint, number)) return refuse(number, *refusal);
-  if (is_postponed_) return;
+  if (step_.is_postponed) return;
   outcomes_.accept(number, waypoint.time);
-  if (waypoint.time > settled_until_) summary_.starved = false;
+  if (waypoint.time > step_.settled_until) summary_.starved = false;
   ++summary_.knots;
   summary_.newest_time = waypoint.time;
-}
-
-/// The waypoint, moved to its representative nearest to the curve. Valid until the next call.
-Waypoint StreamSolver::unwrapped(const Waypoint& given) noexcept {
-  const auto copy = [this](std::span<const double> from, std::size_t part) {
-    const auto to = std::span(unwrapped_).subspan(part * ring_->dimensions(), from.size());
-    std::ranges::copy(from, to.begin());
-    return to;
-  };
-  const WaypointValues values{.position = copy(given.position, 0),
-                              .velocity = copy(given.velocity, 1),
-                              .acceleration = copy(given.acceleration, 2)};
-  curve_.kinds().continue_from(curve_.plan().newest_position(), values);
-  return {.time = given.time,
-          .position = values.position,
-          .velocity = values.velocity,
-          .acceleration = values.acceleration};
 }
 
 /// Appends a waypoint to the curve, as `beyond` specifies. Returns why to refuse it, if so.
 std::optional<Refusal> StreamSolver::append(const Waypoint& waypoint, Word number) noexcept {
   if (!live_ || beyond_ != Beyond::enter) {
-    const bool is_refused = note_excess(curve_.excess_with(waypoint, settled_until_), number);
+    const bool is_refused = note_excess(curve_.excess_with(waypoint, step_.settled_until), number);
     if (is_refused) return Refusal::beyond_limits;
     curve_.append(waypoint, number);
     return std::nullopt;
   }
   std::optional<LimitExcess> excess;
-  const auto followed = curve_.follow(waypoint, number, settled_until_, keep_, tries_, excess);
-  is_postponed_ = followed == Followed::waits;
+  const auto followed =
+      curve_.follow(waypoint, number, step_.settled_until, step_.keep, step_.tries, excess);
+  step_.is_postponed = followed == Followed::waits;
   if (followed == Followed::refused) return Refusal::cannot_follow;
-  if (!is_postponed_) (void)note_excess(excess, number);
+  if (!step_.is_postponed) (void)note_excess(excess, number);
   return std::nullopt;
 }
 
@@ -221,23 +206,23 @@ void StreamSolver::count_excess(std::optional<LimitExcess> excess, Word number,
 void StreamSolver::take_replacement(Word number) noexcept {
   // A replacement is never too late. A stop is a revision of its own, which is committed sooner
   // than a full batch.
-  const bool rests =
-      can_rest() && begins_at_rest(item_.time, *rest_, settled_until_, live_->freeze_ahead);
-  const Time t = rests ? *rest_ : time_of_cut(item_.time);
+  const bool rests = can_rest() && begins_at_rest(item_.time, *step_.rest, step_.settled_until,
+                                                  live_->freeze_ahead);
+  const Time t = rests ? *step_.rest : time_of_cut(item_.time);
   const bool has_begun = curve_.has_begun();  // else there is nothing to replace
   if (has_begun && !is_time_in_range(t)) {
     return refuse_replacement(number, Refusal::too_far_apart);
   }
   // Waypoints that begin a curve together are taken together, too.
-  const bool is_begin = !has_begun && live_ && item_.count > 0 && number + 1 < available_;
+  const bool is_begin = !has_begun && live_ && item_.count > 0 && number + 1 < step_.available;
   if (is_begin && time_refusal(ring_->time(number + 1))) {
     return refuse_replacement(number, Refusal::past);
   }
   ++summary_.controls;
   // The replacement and its waypoints are one revision, as far as the board has room.
-  const bool may_follow = number >= suspected_;
+  const bool may_follow = number >= unsound_.until;
   const Word followers = may_follow ? std::min<Word>(item_.count, board_->capacity() / 2) : 0;
-  batch_limit_ = is_stop(item_) ? 0 : batch_limit_ + followers;
+  step_.batch_limit = is_stop(item_) ? 0 : step_.batch_limit + followers;
   if (!has_begun) return;
   outcomes_.note_in_force(number, is_stop(item_) ? OutcomeWay::stop : OutcomeWay::entry, t);
   // A stop after another one changes nothing.
@@ -252,7 +237,8 @@ void StreamSolver::take_replacement(Word number) noexcept {
 /// over would take them as appended waypoints.
 void StreamSolver::refuse_replacement(Word number, Refusal reason) noexcept {
   refuse(number, reason);
-  const Word end = summary_.consumed + std::min<Word>(item_.count, available_ - summary_.consumed);
+  const Word end =
+      summary_.consumed + std::min<Word>(item_.count, step_.available - summary_.consumed);
   while (summary_.consumed < end) refuse(summary_.consumed++, reason);
 }
 
@@ -265,7 +251,7 @@ void StreamSolver::take_plan(Word number) noexcept {
   if (const auto reason = read_plan(number, plan)) {
     refuse(number, *reason);
     // What follows in the ring of a law are the other pieces.
-    while (planner_ != nullptr && summary_.consumed < available_) {
+    while (planner_ != nullptr && summary_.consumed < step_.available) {
       refuse(summary_.consumed++, *reason);
     }
     return;
@@ -284,7 +270,7 @@ void StreamSolver::take_plan(Word number) noexcept {
   // Looks for the entry onto the first waypoint before the newer ones push it out of the window.
   for (const Waypoint& waypoint : path.waypoints()) {
     curve_.append(waypoint, number);
-    curve_.plan(settled_until_, keep_, false, tries_);
+    curve_.plan(step_.settled_until, step_.keep, false, step_.tries);
   }
   summary_.starved = false;
   summary_.newest_time = path.waypoints().back().time;
@@ -295,9 +281,9 @@ std::optional<Refusal> StreamSolver::read_plan(Word number, core::RateCurve& pla
   const Time t = item_.time;
   const Word pieces = Word{1} + item_.count;
   const bool is_plan = planner_ != nullptr && item_.place == 0 && curve_.has_begun() &&
-                       pieces <= core::RateCurve::kMostPieces && number + pieces <= available_;
+                       pieces <= core::RateCurve::kMostPieces && number + pieces <= step_.available;
   if (!is_plan) return Refusal::unknown_kind;
-  if (t < settled_until_ || !is_time_in_range(t) || t < curve_.earliest_cut()) {
+  if (t < step_.settled_until || !is_time_in_range(t) || t < curve_.earliest_cut()) {
     return Refusal::too_late;
   }
   for (Word i = 0; i < pieces; ++i) {
@@ -321,7 +307,7 @@ void StreamSolver::take_start_state(Word number) noexcept {
   }
   if (!is_time_in_range(state.time)) return refuse(number, Refusal::too_far_apart);
   // One that comes late begins as early as possible.
-  const Time begin = live_ ? std::max(state.time, settled_until_) : state.time;
+  const Time begin = live_ ? std::max(state.time, step_.settled_until) : state.time;
   ++summary_.controls;
   outcomes_.note_in_force(number, OutcomeWay::entry, begin);
   curve_.begin({.time = begin,
@@ -345,8 +331,9 @@ void StreamSolver::take_finish(Word number) noexcept {
     if (!is_finite(values)) return refuse(number, Refusal::not_finite);
     end_.value.assign(values.begin(), values.end());
   }
-  is_postponed_ = curve_.has_begun() && !curve_.finish(end_, settled_until_, keep_, tries_);
-  if (is_postponed_) return;
+  step_.is_postponed =
+      curve_.has_begun() && !curve_.finish(end_, step_.settled_until, step_.keep, step_.tries);
+  if (step_.is_postponed) return;
   const bool stops =
       curve_.plan().ending() == EndKind::stopped || curve_.plan().ending() == EndKind::in_stop;
   if (stops && !summary_.starved) count_excess(curve_.stop_excess(), number, false);
@@ -375,7 +362,7 @@ void StreamSolver::note_outcomes(const RunProgress& now, Word first) noexcept {
 
 void StreamSolver::note_end(const RunProgress& now) noexcept {
   const EndKind kind = curve_.plan().ending();
-  const Time rest = summary_.newest > 0 ? curve_.end_of_motion() : settled_until_;
+  const Time rest = summary_.newest > 0 ? curve_.end_of_motion() : step_.settled_until;
   outcomes_.end(now, {.kind = kind, .rest = rest, .item = summary_.end_item});
   if (kind != EndKind::slowed) return;
   Word newer = 1;

@@ -74,6 +74,9 @@ class PublishedCurve {
 
   [[nodiscard]] const core::Plan& plan() const noexcept { return plan_; }
   [[nodiscard]] const core::SlidingWindow& window() const noexcept { return plan_.window(); }
+  /// See Plan::nearest().
+  [[nodiscard]] Waypoint nearest(const Waypoint& given) noexcept { return plan_.nearest(given); }
+
   [[nodiscard]] const DimensionKinds& kinds() const noexcept { return window().kinds(); }
 
   /// Whether anything has been changed since the last commit, and whether there is a curve.

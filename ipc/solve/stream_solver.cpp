@@ -50,7 +50,6 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& boar
       outcomes_(board, published),
       max_batch_(std::min(kMaxBatch, board.capacity() / 2 - changed_besides(window.settle))),
       item_(ring.dimensions()),
-      unwrapped_(3 * ring.dimensions()),
       replacements_(ring) {
   if (board.capacity() < min_capacity(window.settle)) {
     throw std::invalid_argument("a board of " + std::to_string(board.capacity()) +
@@ -58,7 +57,7 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& boar
                                 std::to_string(window.settle));
   }
   end_.value.reserve(ring.dimensions());
-  most_items_ = max_batch_;
+  unsound_.most_items = max_batch_;
   restore();
   if (is_damaged() || board.revision() >= kLastRevision) {
     throw BadRegion("no solver can continue the curve on the board at its revision " +
@@ -83,7 +82,7 @@ void StreamSolver::restore() {
 }
 
 Time StreamSolver::due() const noexcept {
-  if (live_ && (curve_.is_planning() || is_postponed_)) return settled_at_;
+  if (live_ && (curve_.is_planning() || step_.is_postponed)) return settled_at_;
   const bool settles = live_ && !summary_.finished && summary_.newest > 0 &&
                        summary_.settled_until < curve_.end_of_motion();
   const bool waits = live_ && seen_ != summary_.consumed;
@@ -108,12 +107,12 @@ SettledRaise StreamSolver::settled_raise() const noexcept {
 StepResult StreamSolver::step(const Clock& clock) noexcept {
   if (is_damaged()) return {.damaged = true};
   if (live_) summary_.settled_until = std::max(summary_.settled_until, board_->take_up_settled());
-  is_timed_ = live_ || board_->revision() % kTimedEvery == 0;
+  step_.is_timed = live_ || board_->revision() % kTimedEvery == 0;
   const Time was_due = due();
-  const Time began = is_timed_ ? clock.now() : Time::min();
-  if (is_timed_) started_ = clock.host_time(began);
-  const bool is_late = settled_at_ > Time::min() && was_due < started_;
-  if (is_late) pauses_.note(started_, started_ - was_due);
+  const Time began = step_.is_timed ? clock.now() : Time::min();
+  if (step_.is_timed) step_.started = clock.host_time(began);
+  const bool is_late = settled_at_ > Time::min() && was_due < step_.started;
+  if (is_late) pauses_.note(step_.started, step_.started - was_due);
   const Time now = live_ ? began : Time::min();
   if (live_ && !board_->is_checked()) check_commit(now);
   // Each try takes half as many items as the one before. If a try with one item fails, the next try
@@ -124,7 +123,7 @@ StepResult StreamSolver::step(const Clock& clock) noexcept {
     const StepResult result = make_revision(clock, now);
     const bool is_sound = board_->is_sound();
     // On a live stream the replacement after an entry is taken in the next step, which is due.
-    if (is_sound && (live_ || !entry_before_)) return result;
+    if (is_sound && (live_ || !step_.entry_before)) return result;
     if (!is_sound) suspect_items();
     if (is_damaged()) return {.damaged = true};
   }
@@ -136,12 +135,12 @@ StepResult StreamSolver::make_revision(const Clock& clock, Time now) noexcept {
   freeze(clock, now);
   const Word consumed = consume(now);
   if (is_damaged()) return {.damaged = true};
-  const bool has_news = has_starved_ || plan_.must_commit || stops_.has_changes();
+  const bool has_news = step_.has_starved || plan_.must_commit || stops_.has_changes();
   if (consumed > 0 || curve_.has_changes() || has_news) return publish(clock, consumed);
-  if (!live_ || started_ < due()) return {};
-  settled_at_ = started_;
+  if (!live_ || step_.started < due()) return {};
+  settled_at_ = step_.started;
   // Only the settled time has changed: stores that word, and readers keep their copies.
-  if (summary_.newest > 0) store_settled(settled_until_);
+  if (summary_.newest > 0) store_settled(step_.settled_until);
   return {};
 }
 
@@ -162,32 +161,32 @@ void StreamSolver::take_back(Word misses) noexcept {
 /// had only one item, marks that item to be refused. If it had only the entry before a replacement,
 /// the replacement is taken without it.
 void StreamSolver::suspect_items() noexcept {
-  suspected_ = std::max(suspected_, summary_.consumed);
-  if (entry_before_) {
-    unsound_entry_ = entry_before_;
-  } else if (batch_ > 1) {
-    most_items_ = std::min<Word>(batch_, max_batch_) / 2;
+  unsound_.until = std::max(unsound_.until, summary_.consumed);
+  if (step_.entry_before) {
+    unsound_.entry = step_.entry_before;
+  } else if (step_.batch > 1) {
+    unsound_.most_items = std::min<Word>(step_.batch, max_batch_) / 2;
   } else {
-    unsound_item_ = summary_.consumed - 1;
+    unsound_.item = summary_.consumed - 1;
   }
   take_back(summary_.deadline_misses);
 }
 
-/// Sets settled_until_ for this step, freezes the curve before it, and counts starvation.
+/// Sets step_.settled_until for this step, freezes the curve before it, and counts starvation.
 void StreamSolver::freeze(const Clock& clock, Time now) noexcept {
-  settled_until_ = summary_.settled_until;
-  has_starved_ = false;
+  step_.settled_until = summary_.settled_until;
+  step_.has_starved = false;
   if (!live_) return;
-  settled_until_ = std::max(settled_until_, clock.latest(now, live_->freeze_ahead));
-  rests_ = false;
-  rest_.reset();
-  if (const auto held = clock.held()) rest_ = *held + Time(1);
+  step_.settled_until = std::max(step_.settled_until, clock.latest(now, live_->freeze_ahead));
+  step_.rests = false;
+  step_.rest.reset();
+  if (const auto held = clock.held()) step_.rest = *held + Time(1);
   if (!curve_.has_begun() || summary_.finished) return;
-  curve_.freeze(settled_until_);
+  curve_.freeze(step_.settled_until);
   summary_.low_water =
       std::min(summary_.low_water, std::max(Time::zero(), curve_.plan().newest_time() - now));
   if (summary_.starved || !is_starved()) return;
-  has_starved_ = true;
+  step_.has_starved = true;
   count_excess(curve_.stop_excess(), summary_.consumed - 1, false);
   summary_.starved = true;
   ++summary_.underruns;
@@ -197,8 +196,8 @@ void StreamSolver::freeze(const Clock& clock, Time now) noexcept {
 bool StreamSolver::is_starved() const noexcept {
   // Nothing has settled before the first commit.
   if (!live_ || summary_.newest == 0) return false;
-  return curve_.window().knots() > 0 ? settled_until_ >= curve_.plan().newest_time()
-                                     : settled_until_ > curve_.plan().newest_time();
+  return curve_.window().knots() > 0 ? step_.settled_until >= curve_.plan().newest_time()
+                                     : step_.settled_until > curve_.plan().newest_time();
 }
 
 /// The end of the items that this step may take, if the ring's written position is `written`. Never
@@ -214,36 +213,37 @@ Word StreamSolver::consume(Time now) noexcept {
   const Word before = summary_.consumed;
   if (planner_ != nullptr) plan_law(now);
   const Word written = ring_->written();
-  available_ = reachable(written);
-  keep_ = live_ ? now - live_->history : Time::max();
+  step_.available = reachable(written);
+  step_.keep = live_ ? now - live_->history : Time::max();
   rest_where_held();
-  entry_before_.reset();
-  tries_ = PublishedCurve::kTriesPerStep;
-  batch_limit_ = most_items_;
-  batch_ = 0;
-  is_postponed_ = stops_where_held();
-  bool is_blocked = is_postponed_ || (!is_held() && withdraw());
-  while (!is_blocked && summary_.consumed < available_ && batch_ < batch_limit_ && !is_damaged()) {
+  step_.entry_before.reset();
+  step_.tries = PublishedCurve::kTriesPerStep;
+  step_.batch_limit = unsound_.most_items;
+  step_.batch = 0;
+  step_.is_postponed = stops_where_held();
+  bool is_blocked = step_.is_postponed || (!is_held() && withdraw());
+  while (!is_blocked && summary_.consumed < step_.available && step_.batch < step_.batch_limit &&
+         !is_damaged()) {
     ring_->copy(summary_.consumed, item_);
     // While a stopper holds the stream, no item adds a knot.
     is_blocked = !is_held() && (enters_before(summary_.consumed) || !has_room(item_));
     if (is_blocked) break;
     take(summary_.consumed++);
-    if (is_postponed_) {
+    if (step_.is_postponed) {
       --summary_.consumed;
       break;
     }
-    ++batch_;
-    curve_.plan(settled_until_, keep_, false, tries_);
+    ++step_.batch;
+    curve_.plan(step_.settled_until, step_.keep, false, step_.tries);
     // The next waypoint would push an untried candidate out of the window.
-    if (curve_.is_planning() && tries_ <= 0) break;
+    if (curve_.is_planning() && step_.tries <= 0) break;
   }
   // No further waypoint can be taken: searches with the known ones.
-  if (is_blocked || summary_.consumed == available_) {
-    curve_.plan(settled_until_, keep_, true, tries_);
+  if (is_blocked || summary_.consumed == step_.available) {
+    curve_.plan(step_.settled_until, step_.keep, true, step_.tries);
   }
   const bool waits = is_blocked && summary_.consumed == before && !curve_.has_changes();
-  seen_ = waits || available_ == before ? written : summary_.consumed;
+  seen_ = waits || step_.available == before ? written : summary_.consumed;
   return summary_.consumed - before;
 }
 
@@ -254,22 +254,23 @@ void StreamSolver::plan_law(Time now) noexcept {
   summary_.withdrawn += left;
   summary_.consumed += left;
   has_refused_ = false;
-  plan_ = planner_->plan(now, settled_until_);
+  plan_ = planner_->plan(now, step_.settled_until);
 }
 
 /// Whether the curve enters onto the waypoints before the replacement with this number, which is
 /// taken in the next revision then. The entry is a revision of its own, so that it does not depend
 /// on when the waypoints were taken. The item has been copied.
 bool StreamSolver::enters_before(Word replacement) noexcept {
-  if (item_.kind != ItemKind::replace || replacement == unsound_entry_) return false;
+  if (item_.kind != ItemKind::replace || replacement == unsound_.entry) return false;
   if (curve_.may_enter_before(item_.time)) {
-    if (batch_ > 0) return true;
-    curve_.enter_before_cut(settled_until_, keep_);
-  } else if (!curve_.decide_start(time_of_cut(item_.time), settled_until_, keep_, tries_)) {
+    if (step_.batch > 0) return true;
+    curve_.enter_before_cut(step_.settled_until, step_.keep);
+  } else if (!curve_.decide_start(time_of_cut(item_.time), step_.settled_until, step_.keep,
+                                  step_.tries)) {
     return false;
   }
-  if (batch_ == 0 && curve_.has_changes()) entry_before_ = replacement;
-  is_postponed_ = live_ && entry_before_;
+  if (step_.batch == 0 && curve_.has_changes()) step_.entry_before = replacement;
+  step_.is_postponed = live_ && step_.entry_before;
   return curve_.has_changes();
 }
 
@@ -278,11 +279,11 @@ bool StreamSolver::enters_before(Word replacement) noexcept {
 /// does not wait for room: its history is shorter if more than a board of plans comes.
 bool StreamSolver::has_room(const RingItem& item) const noexcept {
   if (item.kind == ItemKind::rate) return !curve_.has_changes();
-  if (item.kind != ItemKind::replace) return curve_.has_room(kAddedByItem, keep_);
+  if (item.kind != ItemKind::replace) return curve_.has_room(kAddedByItem, step_.keep);
   if (curve_.has_changes()) return false;
   // A stop costs at most one segment of the history: it does not wait for room.
   return is_stop(item) || !curve_.has_begun() ||
-         curve_.has_room_to_cut(time_of_cut(item.time), kAddedByItem, keep_);
+         curve_.has_room_to_cut(time_of_cut(item.time), kAddedByItem, step_.keep);
 }
 
 /// Searches the ring for a replacement that is due, and withdraws all items queued before it. They
@@ -291,7 +292,7 @@ bool StreamSolver::has_room(const RingItem& item) const noexcept {
 /// before it: returns true in that case.
 bool StreamSolver::withdraw() noexcept {
   if (!curve_.has_begun() || summary_.finished) return false;
-  replacements_.note(summary_.consumed, available_);
+  replacements_.note(summary_.consumed, step_.available);
   if (replacements_.empty()) return false;
   const auto replacement = replacements_.due(time_of_cut(Time::min()), curve_.plan().newest_time());
   if (!replacement) return false;
@@ -320,18 +321,19 @@ void StreamSolver::check_commit(Time now) noexcept {
 Time StreamSolver::settled_by_commit() const noexcept {
   if (!live_) return curve_.plan().settled_until();
   // A finished curve no longer changes: it has settled to its end.
-  return summary_.finished ? std::min(std::max(settled_until_, curve_.end_of_motion()), kLatestTime)
-                           : settled_until_;
+  return summary_.finished
+             ? std::min(std::max(step_.settled_until, curve_.end_of_motion()), kLatestTime)
+             : step_.settled_until;
 }
 
 /// Lowers the settled word to where a run begins at rest, and reads the law again. If it does not
 /// hold there any more, the word becomes what it was.
 bool StreamSolver::still_rests(const Clock& clock) noexcept {
-  const Time settled = std::exchange(summary_.settled_until, *rest_);
-  board_->lower_settled(*rest_);
+  const Time settled = std::exchange(summary_.settled_until, *step_.rest);
+  board_->lower_settled(*step_.rest);
   (void)clock.now();
   const auto held = clock.held();
-  if (held && *held + Time(1) == *rest_) return true;
+  if (held && *held + Time(1) == *step_.rest) return true;
   board_->store_settled(settled);
   return false;
 }
@@ -342,15 +344,16 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   curve_.write_summary(summary_);
   if (planner_ == nullptr) note_outcomes(curve_.progress(), summary_.consumed - consumed);
   // The commit time of a recorded stream is not compared with anything.
-  const bool is_free = !rests_ || still_rests(clock);
-  summary_.committed = is_timed_ ? clock.now() : std::max(summary_.committed, clock.about_now());
+  const bool is_free = !step_.rests || still_rests(clock);
+  summary_.committed =
+      step_.is_timed ? clock.now() : std::max(summary_.committed, clock.about_now());
   if (!is_free || (live_ && summary_.changed_from <= summary_.committed)) {
     take_back(summary_.deadline_misses + 1);
     return {.missed = true};
   }
   if (live_) {
     const Time committed = clock.host_time(summary_.committed);
-    pauses_.note(committed, committed - started_);
+    pauses_.note(committed, committed - step_.started);
     summary_.longest_pause = pauses_.longest(committed);
   }
   // A table without the plan that belongs to it would show what is not in force.
@@ -360,12 +363,12 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   board_->commit(summary_);
   if (stops_.has_changes()) board_->store_holders(summary_.holders);
   stops_.committed();
-  settled_at_ = started_;
+  settled_at_ = step_.started;
   if (summary_.newest > 0) store_settled(settled_by_commit());
   board_->store_consumed(summary_.consumed);
-  if (is_timed_) board_->count_step(clock.host_time(summary_.committed) - started_);
+  if (step_.is_timed) board_->count_step(clock.host_time(summary_.committed) - step_.started);
   curve_.committed(summary_);
-  most_items_ = std::min<Word>(2 * most_items_, max_batch_);
+  unsound_.most_items = std::min<Word>(2 * unsound_.most_items, max_batch_);
   const bool changes = summary_.changed_from < Time::max();
   if (live_) check_commit(changes ? clock.now() : summary_.committed);
   return {.consumed = consumed, .published = true};

@@ -115,7 +115,7 @@ class StreamSolver {
   [[nodiscard]] Word seen() const noexcept { return seen_; }
 
   /// Whether the last step has begun what the next item needs, and the next one continues it.
-  [[nodiscard]] bool is_postponed() const noexcept { return is_postponed_; }
+  [[nodiscard]] bool is_postponed() const noexcept { return step_.is_postponed; }
 
   /// Host time at which the next step is due even if no item comes; max() for never.
   [[nodiscard]] Time due() const noexcept;
@@ -131,6 +131,32 @@ class StreamSolver {
   [[nodiscard]] static std::size_t min_capacity(std::size_t settle) noexcept;
 
  private:
+  /// What the current step knows, or the last one.
+  struct Step {
+    Time settled_until = Time::min();  ///< it changes nothing before this time
+    Time keep = Time::max();           ///< it overwrites no segment that ends after this time
+    bool is_timed = false;
+    Time started{};              ///< host time when it began, if it is timed
+    std::optional<Time> rest{};  ///< the earliest time at which a held law allows a change
+    bool rests = false;          ///< a run begins at rest there in this revision
+    bool has_starved = false;    ///< the stream has begun to starve
+    int tries = 0;               ///< candidates of an entry that it may still try
+    bool is_postponed = false;   ///< the search for an entry that an item needs has not ended
+    Word available = 0;          ///< it takes items before this one
+    Word batch = 0;              ///< items taken for this revision, one by one
+    Word batch_limit = 0;        ///< maximum of `batch`
+    std::optional<Word> entry_before{};  ///< the revision has no items: see enters_before()
+  };
+
+  /// What has made a revision unsound, which was discarded then.
+  struct Unsound {
+    Word until = 0;  ///< items before this one were in a discarded revision
+    /// Current maximum of items per revision: max_batch_, or fewer after an unsound revision.
+    Word most_items = 0;
+    std::optional<Word> item{};   ///< the item that alone makes a revision unsound
+    std::optional<Word> entry{};  ///< the replacement before which an entry is unsound
+  };
+
   void restore();
   void freeze(const Clock& clock, Time now) noexcept;
   [[nodiscard]] StepResult make_revision(const Clock& clock, Time now) noexcept;
@@ -159,7 +185,6 @@ class StreamSolver {
   void begin_where_left() noexcept;
   void take(Word number) noexcept;
   void take_waypoint(Word number) noexcept;
-  [[nodiscard]] Waypoint unwrapped(const Waypoint& given) noexcept;
   [[nodiscard]] bool note_excess(const std::optional<LimitExcess>& excess, Word number) noexcept;
   void count_excess(std::optional<LimitExcess> excess, Word number, bool is_refused) noexcept;
   [[nodiscard]] std::optional<Refusal> append(const Waypoint& waypoint, Word number) noexcept;
@@ -193,30 +218,13 @@ class StreamSolver {
   Summary summary_;
   bool lacks_summary_ =
       false;  ///< the board has no summary of its revision: another process has changed it
-  Time settled_until_ = Time::min();  ///< this step changes nothing before this time
-  Time keep_ = Time::max();           ///< this step overwrites no segment that ends after this time
-  bool is_timed_ = false;             ///< this step is timed
-  Time started_{};                    ///< host time when it began, if it is timed
-  Time settled_at_ = Time::min();     ///< host time when settled_until was last stored
-  Pauses pauses_;                     ///< of the steps of a live stream
-  std::optional<Time> rest_{};        ///< the earliest time at which a held law allows a change
-  bool rests_ = false;                ///< a run begins at rest there in this revision
-  bool has_starved_ = false;          ///< the stream has begun to starve in this step
-  int tries_ = 0;                     ///< candidates of an entry that this step may still try
-  bool is_postponed_ = false;         ///< the search for an entry that an item needs has not ended
+  Step step_;
+  Unsound unsound_;
+  Time settled_at_ = Time::min();  ///< host time when settled_until was last stored
+  Pauses pauses_;                  ///< of the steps of a live stream
   RingItem item_;
-  std::vector<double> unwrapped_;  ///< scratch: position, velocity, acceleration
   Condition end_;
   Word seen_ = 0;
-  Word batch_ = 0;        ///< items taken for this revision, one by one
-  Word batch_limit_ = 0;  ///< maximum of batch_ for this revision
-  Word suspected_ = 0;    ///< items before this one were in a discarded unsound revision
-  /// Current maximum of items per revision: max_batch_, or fewer after an unsound revision.
-  Word most_items_ = 0;
-  std::optional<Word> unsound_item_{};   ///< the item that alone makes a revision unsound
-  std::optional<Word> entry_before_{};   ///< the revision has no items: see enters_before()
-  std::optional<Word> unsound_entry_{};  ///< the replacement before which an entry is unsound
-  Word available_ = 0;                   ///< this step takes items before this one
   ReplacementQueue replacements_;
   LawPlanner* planner_ = nullptr;  ///< of a time law
   StopRequests* stoppers_ = nullptr;

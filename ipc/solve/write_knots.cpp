@@ -70,11 +70,11 @@ void KnotWriter::write_ahead(const core::Plan& plan, const core::EnteringAhead& 
   board_->write(origin_.number + 1, record);
   newest_ = origin_.number + 1;
   if (has_line) {
-    after.write_line_end(end.position(), end.velocity(), values_);
+    const Instant stop = plan.stop_begin(ahead, values_);
     record.note = {.form = SegmentForm::stop, .starts = true};
-    record.time = record.begins = after.line_end;
-    record.position = values_;
-    record.acceleration = zeros;
+    record.time = record.begins = stop.time;
+    record.position = stop.position;
+    record.acceleration = stop.acceleration;
     record.item = 0;
     board_->write(++newest_, record);
   }

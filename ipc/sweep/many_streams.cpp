@@ -28,8 +28,7 @@ StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions o
     : options_(std::move(options)),
       tell_(std::move(tell)),
       most_owned_(most_streams(kDescriptorsPerStream)),
-      pause_(pause),
-      quiet_sweeps_(static_cast<std::size_t>(std::max<std::int64_t>(kQuietPause / pause, 1))) {
+      schedule_(pause) {
   for (const std::string& text : wanted) {
     if (is_pattern(text)) {
       patterns_.push_back(text);
@@ -43,10 +42,6 @@ StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions o
   for (auto& [stream, member] : members_) {
     if (own(stream, member)) become(stream, member, State::waiting, SweepNews::waiting);
   }
-}
-
-Time StreamSweep::next_pause() const noexcept {
-  return all_quiet_ ? std::max(pause_, kQuietPause) : pause_;
 }
 
 /// Sets the state of a stream, and reports it if it has changed.

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "ipc/layout/summary.hpp"
+#include "ipc/memory/poll_schedule.hpp"
 #include "ipc/memory/region_watch.hpp"
 #include "ipc/roles/solver_watch.hpp"
 #include "splinecast/solver.hpp"
@@ -65,13 +66,9 @@ class StreamSweep {
   /// once. A stream that fails is given up or postponed; the others continue.
   bool sweep(const Clock& clock);
 
-  /// The time to wait before the next sweep: `pause`, or kQuietPause if that is longer and all
-  /// streams are idle. The next sweep then polls all of them.
-  [[nodiscard]] Time next_pause() const noexcept;
-
-  /// A stream without work for kQuietAfter is idle: it is polled once per kQuietPause.
-  static constexpr Time kQuietAfter = std::chrono::seconds(1);
-  static constexpr Time kQuietPause = std::chrono::milliseconds(20);
+  /// The time to wait before the next sweep: `pause`, or PollSchedule::kIdlePause if that is longer
+  /// and all streams are idle. The next sweep then polls all of them.
+  [[nodiscard]] Time next_pause() const noexcept { return schedule_.next_pause(); }
 
   /// Number of streams that are solved here.
   [[nodiscard]] std::size_t solved() const noexcept { return served_.size(); }
@@ -180,11 +177,8 @@ class StreamSweep {
   std::vector<ItemRefusal> refused_;    ///< scratch
   std::vector<std::string> faults_;     ///< scratch
   Time now_{};                          ///< time of this sweep
-  Time pause_;
-  std::size_t quiet_sweeps_;  ///< one sweep out of this many polls an idle stream
-  std::size_t sweeps_ = 0;
+  PollSchedule schedule_;
   Word stoppers_ = 0;  ///< version of the stoppers when all streams were polled last
-  bool all_quiet_ = false;
   bool has_detached_ = false;
 };
 

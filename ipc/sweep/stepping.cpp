@@ -46,22 +46,17 @@ void StreamSweep::take_up(const Clock& clock) {
 
 /// Collects the streams that have work to do.
 void StreamSweep::collect_calling() {
-  ++sweeps_;
   const Word stoppers = regions_.stoppers().version();
-  const bool looks_at_all = all_quiet_ || std::exchange(stoppers_, stoppers) != stoppers;
-  const Time quiet_since = now_ - kQuietAfter;
-  all_quiet_ = !watches_.empty();
+  schedule_.begin(now_, std::exchange(stoppers_, stoppers) != stoppers);
   calling_.clear();
   for (std::size_t i = 0; i < watches_.size(); ++i) {
     Watch& watch = watches_[i];
-    const bool is_quiet = watch.active <= quiet_since && watch.solver.due() == Time::max();
-    const bool is_looked_at = !is_quiet || looks_at_all || (sweeps_ + i) % quiet_sweeps_ == 0;
-    all_quiet_ = all_quiet_ && is_quiet;
-    const bool calls = is_looked_at && watch.solver.calls();
+    const bool is_read = schedule_.reads(i, watch.active, watch.solver.due() == Time::max());
+    const bool calls = is_read && watch.solver.calls();
     const bool needs_step = calls || (watch.solver.is_due(now_) && !watch.solver.settle(now_));
     if (needs_step) calling_.push_back(i);
   }
-  all_quiet_ = all_quiet_ && calling_.empty();
+  if (watches_.empty() || !calling_.empty()) schedule_.note_work();
 }
 
 /// Prefetches the memory for the steps after the i-th one while that one runs: with many streams

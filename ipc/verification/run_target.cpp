@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/forms/instant.hpp"
 #include "core/laws/law_path.hpp"
 #include "ipc/ring/item.hpp"
 #include "splinecast/waypoint.hpp"
@@ -20,17 +19,13 @@ void RunTarget::list_waypoints(Word first) {
   waypoints_.clear();
   first_ = 0;
   if (!record_.items.is_taken(first, ItemKind::rate)) return list_after(first, std::nullopt);
+  const Instant begin = plan_.origin();
   list_plan(first,
-            {.time = begin_time_,
-             .position = begin_.position()[0],
-             .rate = begin_.velocity()[0],
-             .slope = begin_.acceleration()[0]},
+            {.time = begin.time,
+             .position = begin.position[0],
+             .rate = begin.velocity[0],
+             .slope = begin.acceleration[0]},
             0);
-}
-
-void RunTarget::begin_at(const Instant& state) noexcept {
-  begin_time_ = state.time;
-  core::copy_values(state, begin_);
 }
 
 /// Lists the waypoints of the plan of a law whose pieces begin with item `first`, from its waypoint
@@ -71,7 +66,7 @@ void RunTarget::list_after(Word first, std::optional<Time> after) {
     if (after && time <= *after) continue;
     after.reset();
     if (!waypoints_.empty() && time <= waypoints_.back().time) return;
-    if (!window_.takes(record_.items.waypoint(*next))) return;
+    if (!window().takes(record_.items.waypoint(*next))) return;
     waypoints_.push_back({.time = time, .item = *next});
   }
 }
@@ -79,12 +74,9 @@ void RunTarget::list_after(Word first, std::optional<Time> after) {
 void RunTarget::restart(const RunRestart& restart) {
   std::vector<core::Knot> knots;
   for (const RestartKnot& knot : restart.knots) knots.push_back(knot.view());
-  if (restart.is_later_run) {
-    window_.restore_run(restart.first, knots);
-  } else {
-    window_.restore(restart.first, knots);
-  }
-  window_.freeze_knots(restart.end());
+  plan_.restore(
+      {.knots = restart.end(), .frozen = restart.end(), .is_later_run = restart.is_later_run},
+      knots);
   forget_waypoints();
   first_ = restart.end() - 1;
   waypoints_.push_back({.time = restart.knots.back().time, .item = restart.run_item});
@@ -119,13 +111,13 @@ std::optional<std::size_t> RunTarget::newest_of(std::size_t index) const noexcep
 }
 
 bool RunTarget::append_until(std::size_t count) {
-  while (window_.knots() < count) {
-    const std::size_t k = window_.knots();
+  while (window().knots() < count) {
+    const std::size_t k = window().knots();
     if (k < first_ || k - first_ >= waypoints_.size()) return false;
     for (; frozen_met_ < met_.size() && met_[frozen_met_].newest < k; ++frozen_met_) {
-      window_.freeze_knots(met_[frozen_met_].index + 1);
+      plan_.freeze_knots(met_[frozen_met_].index + 1);
     }
-    append(waypoints_[k - first_]);
+    (void)plan_.append(plan_.nearest(sent(waypoints_[k - first_])));
     used_ = waypoints_[k - first_].item + 1;
   }
   return true;
@@ -134,9 +126,9 @@ bool RunTarget::append_until(std::size_t count) {
 void RunTarget::finish_last_run() noexcept {
   const EndKind end = record_.summary.ending();
   if (end != EndKind::none && end != EndKind::as_requested) return;
-  if (window_.knots() != record_.summary.run_knots || window_.finished()) return;
-  window_.freeze_knots(record_.summary.run_frozen);
-  if (window_.frozen_knots() < window_.knots()) window_.finish(record_.end);
+  if (window().knots() != record_.summary.run_knots || window().finished()) return;
+  plan_.freeze_knots(record_.summary.run_frozen);
+  if (window().frozen_knots() < window().knots()) plan_.end_on_target(record_.end);
 }
 
 /// A waypoint of the run as it was sent, or as the plan of a law determines it.
@@ -149,29 +141,6 @@ Waypoint RunTarget::sent(const RunWaypoint& waypoint) const noexcept {
           .position = values.first(1),
           .velocity = values.subspan(1, 1),
           .acceleration = values.last(1)};
-}
-
-void RunTarget::append(const RunWaypoint& waypoint) noexcept {
-  const Waypoint sent = this->sent(waypoint);
-  const std::size_t dimensions = window_.dimensions();
-  const auto copy = [&](std::size_t part, std::span<const double> from) {
-    const auto to = std::span(values_).subspan(part * dimensions, from.size());
-    std::ranges::copy(from, to.begin());
-    return to;
-  };
-  const WaypointValues values{.position = copy(0, sent.position),
-                              .velocity = copy(1, sent.velocity),
-                              .acceleration = copy(2, sent.acceleration)};
-  record_.kinds.continue_from(newest_position(), values);
-  window_.append({.time = sent.time,
-                  .position = values.position,
-                  .velocity = values.velocity,
-                  .acceleration = values.acceleration});
-}
-
-std::span<const double> RunTarget::newest_position() const noexcept {
-  if (window_.knots() > 0) return window_.knot(window_.knots() - 1).waypoint;
-  return window_.is_later_run() ? begin_.position() : std::span<const double>{};
 }
 
 }  // namespace splinecast::ipc

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "core/laws/rate_curve.hpp"
+#include "core/motion/entry_end.hpp"
+#include "core/motion/plan.hpp"
 #include "core/online/sliding_window.hpp"
 #include "ipc/memory/word.hpp"
 #include "ipc/verification/recorded_decisions.hpp"
@@ -17,9 +19,9 @@
 
 namespace splinecast::ipc {
 
-/// Solves the target of a run again: appends its waypoints one after the other, and freezes each
-/// knot when the segments of the record show that the solver froze it. Holds one run at a time. One
-/// thread uses it.
+/// Makes the plan of a recorded run again: appends the run's waypoints one after the other, freezes
+/// each knot when the segments of the record show that the solver froze it, and imposes the entries
+/// and ends that they show. Searches for nothing. Holds one run at a time. One thread uses it.
 class RunTarget {
  public:
   /// The record and its replacements outlive this. Throws std::invalid_argument for window options
@@ -27,19 +29,16 @@ class RunTarget {
   RunTarget(const StreamRecord& record, const Replacements& replacements)
       : record_(record),
         replacements_(replacements),
-        window_(record.items.dimensions(), core::with_kinds(record.window, record.kinds)),
-        values_(3 * record.items.dimensions()),
-        begin_(record.items.dimensions()) {}
+        plan_(record.items.dimensions(), core::with_kinds(record.window, record.kinds)) {}
+
+  [[nodiscard]] const core::Plan& plan() const noexcept { return plan_; }
 
   /// The spline through the waypoints appended so far.
-  [[nodiscard]] const core::SlidingWindow& window() const noexcept { return window_; }
+  [[nodiscard]] const core::SlidingWindow& window() const noexcept { return plan_.window(); }
 
-  /// Begins a new run, which continues from a given state: see begin_at().
-  void begin_run() { window_.begin_run(); }
-
-  /// Sets the state in which the current run begins. The first waypoint is unwrapped to it, and
-  /// the pieces of a law continue it.
-  void begin_at(const Instant& state) noexcept;
+  /// Begins a new run in a state, or the same one in another state while it has no waypoints. The
+  /// first waypoint is unwrapped to it, and the pieces of a law continue it.
+  void begin_run(const Instant& state) noexcept { plan_.begin(state); }
 
   /// Clears the lists of a run: its waypoints, and those that the curve meets.
   void forget_waypoints() noexcept;
@@ -72,8 +71,14 @@ class RunTarget {
   /// false if the run has fewer than `count`.
   [[nodiscard]] bool append_until(std::size_t count);
 
-  /// Freezes the first `count` waypoints of the run.
-  void freeze(std::size_t count) noexcept { window_.freeze_knots(count); }
+  /// Makes an entry part of the plan, as its end was decided.
+  void enter(const core::EntryEnd& end) noexcept { plan_.enter(end, std::nullopt); }
+
+  /// Records that the curve has left the target at waypoint `index`, in the stop there.
+  void leave_target_at(std::size_t index) noexcept { plan_.leave_target_at(index); }
+
+  /// Ends the plan by an entry that comes to rest at its newest waypoint.
+  void end_by_entry(Time rest) noexcept { plan_.end_by_entry(rest, std::nullopt); }
 
   /// Finishes the stream, if the window has all waypoints of the last run and is not finished.
   void finish_last_run() noexcept;
@@ -97,15 +102,10 @@ class RunTarget {
   void list_after(Word first, std::optional<Time> after);
   void list_plan(Word first, const core::LawState& from, std::size_t done);
   [[nodiscard]] Waypoint sent(const RunWaypoint& waypoint) const noexcept;
-  void append(const RunWaypoint& waypoint) noexcept;
-  [[nodiscard]] std::span<const double> newest_position() const noexcept;
 
   const StreamRecord& record_;
   const Replacements& replacements_;
-  core::SlidingWindow window_;
-  std::vector<double> values_;  ///< scratch
-  State begin_;                 ///< in which the current run begins
-  Time begin_time_{};
+  core::Plan plan_;
   std::vector<RunWaypoint> waypoints_;  ///< of the current run
   std::size_t first_ = 0;               ///< number of the first of them in the run
   std::vector<MetKnot> met_;            ///< knots of the current run that the curve meets

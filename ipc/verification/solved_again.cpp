@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "core/forms/entry.hpp"
 #include "core/forms/knot_segment.hpp"
 #include "core/forms/stop.hpp"
+#include "core/motion/end.hpp"
+#include "core/motion/entry_end.hpp"
 #include "ipc/verification/difference.hpp"
 #include "ipc/verification/stream_replay.hpp"
 
@@ -42,6 +45,7 @@ bool StreamReplay::solve_on_target(std::size_t s) {
                     is_shortest ? StopPart::shortest : StopPart::whole)) {
       return false;
     }
+    if (!is_last) target_.leave_target_at(*index);
   } else {
     window.segment(*index, solved_);
     if (!compare_solved(s)) return false;
@@ -121,7 +125,9 @@ bool StreamReplay::solve_stop(std::size_t s, const Instant& from, StopPart part)
   const core::StopRules rules = target_.window().stop_rules();
   if (has_former_rules()) {
     const bool is_whole = part != StopPart::remainder;
-    const Time length = is_whole ? former_stop_time(rules, from) : after_entry_.stop_length();
+    const auto* const ahead = std::get_if<core::EnteringAhead>(&target_.plan().end());
+    const Time length =
+        is_whole || ahead == nullptr ? former_stop_time(rules, from) : ahead->after.stop_length();
     core::build_stop(from.time, length, from.position, from.velocity, from.acceleration, solved_);
     return compare_solved(s);
   }
@@ -165,49 +171,37 @@ Time StreamReplay::stop_length_after(std::size_t s) const noexcept {
 bool StreamReplay::solve_entry(std::size_t s) {
   const SegmentCopy& segment = segments_[s];
   begin_.find(s, natural_right_);
-  Instant end = begin_.at(segment.natural_right);
+  core::EntryEnd end;
   if (segment.origin.ends_at_waypoint) {
     const auto index = target_.index_of(segment.natural_right);
     if (!index) return differ(s, "right end", in_words(segment.natural_right), "no waypoint");
     if (!append_until(*index + segment.newer_knots + 1)) return false;
-    target_.freeze(*index + 1);
-    const core::Knot knot = target_.window().knot(*index);
-    target_.window().write_acceleration(*index, end_.ref().acceleration);
-    end.position = knot.position;
-    end.velocity = knot.velocity;
+    end = core::end_at_knot(target_.window(), *index, end_);
   } else {
     if (!append_until(segment.origin.known)) return false;
     extrapolation_.begin_line(target_.window());
     extrapolation_.stop_after(stop_length_after(s));
-    extrapolation_.state_at(end.time, end_.ref());
-    end.position = end_.position();
-    end.velocity = end_.velocity();
-    after_entry_ = {
-        .end = end.time, .line_end = extrapolation_.line_end(), .rest = extrapolation_.rest()};
+    end = core::end_ahead(target_.window(), extrapolation_, segment.natural_right, end_);
   }
-  end.acceleration = end_.acceleration();
-  core::build_entry(begin_.at(segment.left), end, solved_);
+  target_.enter(end);
+  core::build_entry(begin_.at(segment.left), end.state, solved_);
   return compare_solved(s);
 }
 
 /// Solves and compares the straight line or the stop after an entry beyond the newest waypoint.
 bool StreamReplay::solve_behind_entry(std::size_t s) {
-  const auto position = std::span(values_);
-  const bool is_line = segments_[s].kind == SegmentKind::spline;
-  after_entry_.write_line_end(end_.position(), end_.velocity(), position);
-  if (is_line) {
+  const core::Plan& plan = target_.plan();
+  const auto* const ahead = std::get_if<core::EnteringAhead>(&plan.end());
+  if (ahead == nullptr) return differ(s, "kind", in_words(segments_[s].kind), "none");
+  const Instant stop = plan.stop_begin(*ahead, values_);
+  if (segments_[s].kind == SegmentKind::spline) {
+    const State& end = plan.entry_end();
     core::build_segment(core::SegmentForm::cubic,
-                        {after_entry_.end, end_.position(), end_.velocity(), {}, {}},
-                        {after_entry_.line_end, position, end_.velocity(), {}, {}}, solved_);
+                        {ahead->after.end, end.position(), end.velocity(), {}, {}},
+                        {stop.time, stop.position, stop.velocity, {}, {}}, solved_);
     return compare_solved(s);
   }
-  return solve_stop(
-      s,
-      {.time = after_entry_.stop_begin(),
-       .position = after_entry_.has_line() ? std::span<const double>(position) : end_.position(),
-       .velocity = end_.velocity(),
-       .acceleration = end_.acceleration()},
-      after_entry_.has_line() ? StopPart::whole : StopPart::remainder);
+  return solve_stop(s, stop, ahead->after.has_line() ? StopPart::whole : StopPart::remainder);
 }
 
 /// Whether the entry that ends the curve is the first one of its run.
@@ -224,11 +218,12 @@ void StreamReplay::solve_ending(std::size_t i) {
     return (void)differ(i, "kind: it belongs to no run", in_words(segments_[i].kind), "none");
   }
   begin_.find(i, natural_right_);
-  const core::Knot knot = target_.window().knot(target_.window().knots() - 1);
+  target_.end_by_entry(segments_[i].natural_right);
   std::ranges::fill(values_, 0.0);
-  const auto zeros = std::span(values_).first(target_.window().dimensions());
-  core::build_entry(begin_.at(segments_[i].left),
-                    {segments_[i].natural_right, knot.position, zeros, zeros}, solved_);
+  core::build_entry(
+      begin_.at(segments_[i].left),
+      {segments_[i].natural_right, target_.plan().entry_end().position(), values_, values_},
+      solved_);
   if (compare_solved(i)) advance();
 }
 

@@ -99,7 +99,6 @@ bool StreamReplay::begin_run(std::size_t i) {
   const bool is_same_run =
       i > 0 && !is_first_of_part && target_.window().knots() == 0 &&
       (target_.window().is_later_run() || !decisions_.replacements().find(0, first_items));
-  if (is_later && !is_same_run) target_.begin_run();
   bool begins_here = !is_same_run || decisions_.begins_at_cut(i);
   if (!begins_here && decisions_.may_begin_at_late_cut(i)) {
     begins_here = late_cuts_.contains(i);
@@ -107,7 +106,9 @@ bool StreamReplay::begin_run(std::size_t i) {
   } else {
     open_cut_.reset();
   }
-  if (begins_here) target_.begin_at(begin_.at(segment.left));
+  if (begins_here && (is_later || target_.window().is_later_run())) {
+    target_.begin_run(begin_.at(segment.left));
+  }
   target_.forget_waypoints();
   run_item_ = segment.origin.item;
   if (!run_item_ && segment.has_waypoint) {
@@ -188,8 +189,7 @@ bool StreamReplay::rests_at_last_waypoint() {
   if (segments_.empty() || run_item == 0 || run_item_ == run_item - 1) return false;
   if (!expect_all_used(run_item - 1)) return false;
   begin_.take_cut(segments_.size() - 1, segments_.back().right);
-  target_.begin_at(begin_.at(segments_.back().right));
-  target_.begin_run();
+  target_.begin_run(begin_.at(segments_.back().right));
   target_.forget_waypoints();
   target_.list_waypoints(run_item - 1);
   const core::SlidingWindow& window = target_.window();

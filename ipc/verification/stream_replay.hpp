@@ -86,9 +86,8 @@ class StreamReplay {
   RunTarget target_;
   BeginState begin_;
   core::Segment solved_;
-  State end_;  ///< state at the end of an entry
+  State end_;  ///< scratch: state at the end of an entry
   core::Extrapolation extrapolation_;
-  core::AfterEntry after_entry_;
   core::SlowedPath path_;
   core::Segment piece_;                     ///< scratch: of the path
   std::size_t slowed_ = 0;                  ///< segment at which the curve begins to slow down

@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "ipc/board/reader.hpp"
-#include "ipc/board/refused_item.hpp"
+#include "ipc/board/refusal_record.hpp"
 #include "ipc/layout/board_control.hpp"
 #include "ipc/layout/check.hpp"
 #include "ipc/layout/header.hpp"
@@ -30,7 +30,7 @@ void look_around(const ipc::KnotBoardReader& board) {
   for (const ipc::Word seen : {r, r - 1, r - ipc::kChangesKept, ipc::Word{0}}) {
     (void)board.copy_bounds(look, seen, summary);
   }
-  std::array<ipc::RefusedItem, 3> refused{};
+  std::array<ipc::RefusalRecord, 3> refused{};
   require(board.copy_refusals(summary, 0, refused) <= refused.size(),
           "refusals fit into their array");
   for (const ipc::Word back : {ipc::Word{1}, ipc::Word{9}, ipc::Word{ipc::kOutcomesKept}}) {

@@ -4,6 +4,7 @@
     house.py rooms                 number of files in each folder
     house.py files                 lines per file, and the longest files
     house.py functions             the longest functions
+    house.py members               the classes with the most data members
     house.py headers               the installed headers
     house.py layers                the rooms from the lowest to the highest, and includes of higher rooms
     house.py walk                  the files that a waypoint passes through, as listed in CONTRIBUTING.md
@@ -12,7 +13,8 @@
     house.py page [--check]        writes docs/house.md; --check: exits with 1 if it is not up to date
 
 Each command exits with 1 if a limit is exceeded. The limits: 20 files in a room, 30 in a folder of tests or docs;
-400 lines in a file, with a median of at most 150; 40 lines in a function; 24 installed headers.
+400 lines in a file, with a median of at most 150; 40 lines in a function; 25 data members in a class; 24 installed
+headers.
 """
 
 import argparse
@@ -28,6 +30,9 @@ PROJECT = Path(__file__).resolve().parent.parent.parent
 EXPORTS = Path(__file__).resolve().parent / "exports.txt"
 PAGE = PROJECT / "docs" / "house.md"
 MOST_FILES, MOST_FILES_OF_TESTS, MOST_LINES, MEDIAN_LINES, MOST_FUNCTION_LINES, MOST_HEADERS = 20, 30, 400, 150, 40, 24
+MOST_MEMBERS = 25
+# Their members are the words of a region: see ipc/layout/table.hpp.
+FORMATS = {"ipc/layout/header.hpp: RegionHeader", "ipc/layout/summary.hpp: Summary"}
 
 # The rooms from the lowest to the highest. A file includes only files of its own room and of lower ones.
 ROOMS = {
@@ -131,6 +136,46 @@ def functions():
     return out, broken
 
 
+def body_from(code, begin):
+    """What the braces that open before `begin` enclose, with a semicolon in place of each inner block."""
+    depth, out = 1, []
+    for c in code[begin:]:
+        depth += (c == "{") - (c == "}")
+        if depth == 0:
+            break
+        if depth == 1:
+            out.append(";" if c == "}" else c)
+    return "".join(out)
+
+
+def is_member(statement):
+    """Whether a statement of a class declares a data member."""
+    statement = re.sub(r"\b(public|private|protected)\s*:(?!:)|\[\[.*?\]\]", " ", statement).split("=")[0].strip()
+    while "<" in statement and (shorter := re.sub(r"<[^<>]*>", "", statement)) != statement:
+        statement = shorter
+    if re.match(r"(using|friend|static|enum|template|typedef|class|struct|union|explicit|constexpr)\b", statement):
+        return False
+    return bool(re.fullmatch(r"[A-Za-z_][\w:*&\s]*[\s*&]\w+(\s*\[[^\]]*\])?(\s*:\s*\d+)?", statement))
+
+
+def members_of(name):
+    """(number of data members, file and class) of each class in a file; those of its bases do not count."""
+    code = without_texts((PROJECT / name).read_text(encoding="utf-8"))
+    heads = re.finditer(r"(?<!enum )\b(?:class|struct)\s+(?:\[\[.*?\]\]\s*)?(\w+)[^;{}()=]*\{", code)
+    return [(sum(map(is_member, body_from(code, head.end()).split(";"))), f"{name}: {head.group(1)}") for head in heads]
+
+
+def members():
+    """The classes of the product with the most data members, except those whose members are the words of a region."""
+    found = sorted((m for name in sources() if not name.startswith("tests/")
+                    for m in members_of(name) if m[1] not in FORMATS), reverse=True)
+    out = [f"{len(found)} classes, median {statistics.median(count for count, _ in found):g} members", "the most:"]
+    out += [f"{count:5}  {name}" for count, name in found[:5]]
+    broken = [f"{name} has {count} data members, more than {MOST_MEMBERS}" for count, name in found
+              if count > MOST_MEMBERS]
+    return out, broken
+
+
 def headers():
     """The installed headers, which include no other file of the project."""
     found = files("core/include/*.hpp", "ipc/include/*.hpp")
@@ -203,8 +248,8 @@ def symbols(library, write):
     return [f"{len(exported)} exported symbols"], broken
 
 
-COMMANDS = {"rooms": rooms, "files": file_lengths, "functions": functions, "headers": headers, "layers": layers,
-            "walk": walk}
+COMMANDS = {"rooms": rooms, "files": file_lengths, "functions": functions, "members": members, "headers": headers,
+            "layers": layers, "walk": walk}
 
 
 def page():

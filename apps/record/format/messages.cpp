@@ -122,15 +122,15 @@ NumberedItem decode_item(std::span<const std::byte> bytes, std::size_t dimension
   return found;
 }
 
-Bytes encode(const ipc::RefusedItem& refused) {
+Bytes encode(const ipc::RefusalRecord& refused) {
   Bytes bytes = begin(RecordKind::refusal, 9);
   ByteWriter(bytes).put(refused.item).put(static_cast<std::uint8_t>(refused.reason));
   return bytes;
 }
 
-ipc::RefusedItem decode_refusal(std::span<const std::byte> bytes) {
+ipc::RefusalRecord decode_refusal(std::span<const std::byte> bytes) {
   ByteReader in(bytes);
-  ipc::RefusedItem refused{.item = in.take<ipc::Word>()};
+  ipc::RefusalRecord refused{.item = in.take<ipc::Word>()};
   refused.reason = checked(in.take<std::uint8_t>(), Refusal::past,
                            static_cast<Refusal>(kRefusals - 1), "reason");
   in.require_end();

@@ -8,7 +8,7 @@
 
 #include "apps/record/format/bytes.hpp"
 #include "apps/record/format/record.hpp"
-#include "ipc/board/refused_item.hpp"
+#include "ipc/board/refusal_record.hpp"
 #include "ipc/board/segment.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/ring/item.hpp"
@@ -33,8 +33,8 @@ struct NumberedItem {
 /// The condition of a finish.
 [[nodiscard]] Condition condition_of(const ipc::RingItem& item);
 
-[[nodiscard]] Bytes encode(const ipc::RefusedItem& refused);
-[[nodiscard]] ipc::RefusedItem decode_refusal(std::span<const std::byte> bytes);
+[[nodiscard]] Bytes encode(const ipc::RefusalRecord& refused);
+[[nodiscard]] ipc::RefusalRecord decode_refusal(std::span<const std::byte> bytes);
 
 [[nodiscard]] Bytes encode(const ipc::SegmentCopy& segment);
 [[nodiscard]] ipc::SegmentCopy decode_segment(std::span<const std::byte> bytes,

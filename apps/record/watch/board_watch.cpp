@@ -117,7 +117,7 @@ void BoardWatch::put_refusals(Batch& batch) {
     needs_start_ = true;
     put_loss(batch, {.cause = LossCause::overwritten, .refusals = missed});
   }
-  for (const ipc::RefusedItem& refused : std::span(refused_).first(count)) {
+  for (const ipc::RefusalRecord& refused : std::span(refused_).first(count)) {
     batch.add(record(RecordKind::refusal, refused.item, event_time(batch), encode(refused)));
     put_event(batch, EventKind::refusal,
               fmt::format(R"("item":{},"reason":"{}")", refused.item, to_string(refused.reason)));

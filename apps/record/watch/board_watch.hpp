@@ -81,7 +81,7 @@ class BoardWatch {
   ipc::Look looked_{};
   ipc::Summary summary_;   ///< of the last look
   ipc::SegmentCopy last_;  ///< the newest segment that has been read
-  std::vector<ipc::RefusedItem> refused_;
+  std::vector<ipc::RefusalRecord> refused_;
   std::map<ipc::Word, ipc::Word> stops_;  ///< last request in force of each stopper, by its id
   bool looks_back_ = false;               ///< in look_back()
   bool has_last_ = false;

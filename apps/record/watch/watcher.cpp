@@ -12,10 +12,6 @@
 namespace splinecast::apps::record {
 namespace {
 
-constexpr Time kPause = std::chrono::milliseconds(1);
-constexpr Time kQuietPause = std::chrono::milliseconds(20);
-constexpr Time kQuietAfter = std::chrono::seconds(1);
-constexpr std::size_t kQuietSweeps = kQuietPause / kPause;
 /// Interval of looks for files that come or go, and for processes that take over.
 constexpr Time kLookAround = std::chrono::milliseconds(20);
 constexpr Time kLookAtOwners = std::chrono::milliseconds(100);
@@ -50,15 +46,11 @@ void Watcher::sweep(Batch& batch) {
     next_look_ = batch.now + kLookAround;
     look_around(batch);
   }
-  const bool looks_at_all = all_quiet_;
-  ++sweeps_;
-  all_quiet_ = true;
+  schedule_.begin(batch.now);
   is_behind_ = false;
   for (std::size_t i = 0; i < members_.size(); ++i) {
     Member& member = *members_[i];
-    const bool is_quiet = member.active + kQuietAfter <= batch.now;
-    all_quiet_ = all_quiet_ && is_quiet;
-    if (is_quiet && !looks_at_all && (sweeps_ + i) % kQuietSweeps != 0) continue;
+    if (!schedule_.reads(i, member.active)) continue;
     if (batch.now >= member.next_owners) {
       member.next_owners = batch.now + kLookAtOwners;
       member.watch.look_at_owners(batch);
@@ -70,13 +62,12 @@ void Watcher::sweep(Batch& batch) {
     has_detached_ = has_detached_ || !member.watch.is_complete();
     member.active = batch.now;
     is_behind_ = is_behind_ || batch.records.size() - before > kMany;
-    all_quiet_ = false;
+    schedule_.note_work();
   }
 }
 
 Time Watcher::next_pause() const noexcept {
-  if (is_behind_) return Time::zero();
-  return all_quiet_ ? kQuietPause : kPause;
+  return is_behind_ ? Time::zero() : schedule_.next_pause();
 }
 
 void Watcher::look_around(Batch& batch) {

@@ -12,13 +12,13 @@
 #include "apps/record/watch/clocks.hpp"
 #include "apps/record/watch/stream_watch.hpp"
 #include "ipc/memory/folder_watch.hpp"
+#include "ipc/memory/poll_schedule.hpp"
 #include "splinecast/options.hpp"
 
 namespace splinecast::apps::record {
 
 /// Watches many streams in one thread: those that are named, and those that match a pattern as they
-/// come and go. Polls the streams; a stream without changes for a second is polled every 20 ms
-/// only.
+/// come and go. Polls the streams by a PollSchedule.
 class Watcher {
  public:
   /// Called when a stream is recorded from now on, and with the reason when one cannot be recorded,
@@ -71,9 +71,8 @@ class Watcher {
   std::vector<std::unique_ptr<Member>> members_;
   std::map<std::string, Member*, std::less<>> by_name_;
   Time next_look_ = Time::min();
-  std::size_t sweeps_ = 0;
+  ipc::PollSchedule schedule_;
   bool has_looked_around_ = false;
-  bool all_quiet_ = true;
   bool is_behind_ = false;
   bool has_detached_ = false;
   bool has_seen_any_ = false;

@@ -89,7 +89,7 @@ py::object to_exception(const std::exception& failure) {
                          : py::handle(PyExc_RuntimeError)(failure.what());
 }
 
-void throw_refused(const RefusedItem& item) {
+void throw_refused(const NotAccepted& item) {
   const bool is_full = item.status == AppendStatus::full;
   std::string text = item.what + (" refused: " + std::string(to_string(item.status)));
   if (item.index) text += " (waypoint " + std::to_string(*item.index) + ')';

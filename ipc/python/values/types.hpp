@@ -31,7 +31,7 @@ void import_types();
 [[nodiscard]] py::object to_exception(const std::exception& failure);
 
 /// An item that the ring did not accept.
-struct RefusedItem {
+struct NotAccepted {
   const char* what;  ///< `waypoint`, `replacement`, …
   AppendStatus status;
   std::optional<Time> time{};
@@ -41,6 +41,6 @@ struct RefusedItem {
 };
 
 /// Raises Refused, or Full.
-[[noreturn]] void throw_refused(const RefusedItem& item);
+[[noreturn]] void throw_refused(const NotAccepted& item);
 
 }  // namespace splinecast::python

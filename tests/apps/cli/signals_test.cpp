@@ -112,6 +112,18 @@ TEST(Signals, AnAlarmEndsAProcessThatIgnoresASignalForSeconds) {
   EXPECT_EQ(WEXITSTATUS(*status), kInterrupted);
 }
 
+TEST(Signals, AStepOfAShutdownRestartsTheAlarmButSetsNone) {
+  EXPECT_EQ(alarm(0), 0U);
+  extend_shutdown();
+  EXPECT_EQ(alarm(0), 0U) << "an alarm without a signal";
+  constexpr unsigned kLong = 1000;
+  alarm(kLong);
+  extend_shutdown();
+  const unsigned left = alarm(0);
+  EXPECT_GT(left, 0U);
+  EXPECT_LE(left, 5U);
+}
+
 TEST(Signals, AChildProcessSetsNoAlarmUnlessItsParentIsDead) {
   const pid_t parent = getpid();
   Stubborn child([parent] { catch_stop_signals_as_child_of(parent); });

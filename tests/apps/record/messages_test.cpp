@@ -82,7 +82,7 @@ std::vector<Example> examples() {
          EXPECT_EQ(found.item.request(), 7U);
          return encode(found.number, found.item);
        }},
-      {encode(ipc::RefusedItem{.item = 3, .reason = Refusal::past}),
+      {encode(ipc::RefusalRecord{.item = 3, .reason = Refusal::past}),
        [=](auto m) { return encode(decode_refusal(body(m))); }},
       {encode(a_segment()), [=](auto m) { return encode(decode_segment(body(m), kDimensions)); }},
       {encode(a_restart()), [=](auto m) { return encode(decode_restart(body(m), kDimensions)); }},

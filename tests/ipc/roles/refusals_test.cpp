@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "ipc/board/refused_item.hpp"
+#include "ipc/board/refusal_record.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/roles/inspect.hpp"
@@ -153,7 +153,7 @@ TEST(RefusalsOfABoard, ExcludeThoseThatLaterOnesMayOverwrite) {
   }
   summary.consumed = 2 * summary.refused;
   board.writer.commit(summary);
-  std::vector<RefusedItem> copied(kRefusalsKept);
+  std::vector<RefusalRecord> copied(kRefusalsKept);
   EXPECT_EQ(board.reader.copy_refusals(summary, 0, copied), kRefusalsKept);
   EXPECT_EQ(copied.front().item, 6U);
   // Two more refusals, not committed: their items are after those that the summary has consumed.

@@ -142,9 +142,9 @@ TEST(StreamSweep, AnIdleStreamIsPolledOnlyInSomeSweeps) {
 
   int most_sweeps = 0;
   for (int round = 0; round < 2; ++round) {
-    clock.time += StreamSweep::kQuietAfter;
+    clock.time += PollSchedule::kIdleAfter;
     told.sweep.sweep(clock);
-    EXPECT_EQ(told.sweep.next_pause(), StreamSweep::kQuietPause);
+    EXPECT_EQ(told.sweep.next_pause(), PollSchedule::kIdlePause);
     EXPECT_EQ(sweeps_to_take(second), 1);  // after the long pause the sweep polls all streams
     EXPECT_EQ(told.sweep.next_pause(), kPause);
     EXPECT_EQ(sweeps_to_take(second), 1);
@@ -154,7 +154,7 @@ TEST(StreamSweep, AnIdleStreamIsPolledOnlyInSomeSweeps) {
     EXPECT_EQ(sweeps_to_take(first), 1);
   }
   EXPECT_GT(most_sweeps, 1);
-  EXPECT_LE(most_sweeps, StreamSweep::kQuietPause / kPause);
+  EXPECT_LE(most_sweeps, PollSchedule::kIdlePause / kPause);
 }
 
 TEST(StreamSweep, IdleStreamsKeepALongPauseAndASweepWithoutStreamsAShortOne) {
@@ -167,7 +167,7 @@ TEST(StreamSweep, IdleStreamsKeepALongPauseAndASweepWithoutStreamsAShortOne) {
     sweep.sweep(clock);
     return sweep.solved() == 1;
   }));
-  clock.time += StreamSweep::kQuietAfter;
+  clock.time += PollSchedule::kIdleAfter;
   sweep.sweep(clock);
   EXPECT_EQ(sweep.next_pause(), std::chrono::milliseconds(30));
   append_at(producer, Time(0));

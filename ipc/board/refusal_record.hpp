@@ -8,7 +8,7 @@
 namespace splinecast::ipc {
 
 /// An item that the solver refused.
-struct RefusedItem {
+struct RefusalRecord {
   Word item = 0;
   Refusal reason{};
   std::uint8_t slot = 0;  ///< of the stopper, if it was refused as `stopped`
