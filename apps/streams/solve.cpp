@@ -46,7 +46,7 @@ class Announcer {
   }
 
   void tell(ipc::SweepNews news, const std::string& stream, const Solver* solver,
-            std::string_view why = {}) {
+            std::string_view why) {
     using enum ipc::SweepNews;
     const bool is_lost = news == no_descriptors || news == postponed || news == given_up;
     if (is_lost) lost_.insert(stream);
@@ -131,48 +131,25 @@ class Announcer {
   std::set<std::string> lost_;
 };
 
-/// Whether the state of following of an attached solver has changed. Takes the new one.
-bool takes_change(ipc::Following& known, const Solver& solver) {
-  const ipc::Following now = ipc::Internals::summary(solver).following();
-  return std::exchange(known, now) != now;
-}
-
 /// Solves one stream. Sleeps on its ring while it has no work to do.
 int solve_one(const SolveOptions& options) {
   const MonotonicClock clock;
   Announcer announcer(options, false);
   Solver solver(options.wanted.front(), options.solver);
-  const auto tell = [&](ipc::SweepNews news, std::string_view why = {}) {
-    announcer.tell(news, solver.stream(), &solver, why);
-  };
-  tell(ipc::SweepNews::waiting);
+  const ipc::TellNews tell = [&announcer](const auto&... news) { announcer.tell(news...); };
+  tell(ipc::SweepNews::waiting, solver.stream(), &solver, {});
   bool was_attached = false;
-  bool was_finished = false;
-  auto following = ipc::Following::meets;
-  std::vector<ItemRefusal> refused;
-  std::vector<std::string> faults;
+  ipc::ReportedNews reported;
+  ipc::ReportedNews::Scratch scratch;
   while (!stop_requested()) {
     if (!solver.attached()) {
-      if (was_attached) tell(ipc::SweepNews::waiting);
+      if (was_attached) tell(ipc::SweepNews::waiting, solver.stream(), &solver, {});
       was_attached = solver.attach(clock);
-      was_finished = false;
-      following = ipc::Following::meets;
-      if (was_attached) tell(ipc::SweepNews::solving);
+      reported = {};
+      if (was_attached) tell(ipc::SweepNews::solving, solver.stream(), &solver, {});
     }
     const StepResult result = solver.step(clock);
-    solver.take_first_refusals(refused);
-    for (const ItemRefusal& item : refused) tell(ipc::SweepNews::refused, to_string(item));
-    if (const auto excess = solver.take_first_excess()) {
-      tell(ipc::SweepNews::beyond_limits, solver.in_words(*excess));
-    }
-    if (solver.attached() && takes_change(following, solver)) tell(ipc::SweepNews::following);
-    faults.clear();
-    solver.take_commander_faults(faults);
-    for (const std::string& fault : faults) tell(ipc::SweepNews::commander, fault);
-    if (solver.attached() && ipc::Internals::summary(solver).finished && !was_finished) {
-      was_finished = true;
-      tell(ipc::SweepNews::finished);
-    }
+    reported.report(solver, tell, scratch);
     if (result.consumed == 0 && !result.missed) solver.wait(kLongestWait);
   }
   return kOk;
@@ -185,9 +162,7 @@ int solve_many(const SolveOptions& options) {
   Announcer announcer(options, true);
   ipc::StreamSweep sweep(
       options.wanted, options.solver,
-      [&announcer](ipc::SweepNews news, const std::string& stream, const Solver* solver,
-                   std::string_view why) { announcer.tell(news, stream, solver, why); },
-      options.sweep);
+      [&announcer](const auto&... news) { announcer.tell(news...); }, options.sweep);
   Time due = clock.now();
   while (!stop_requested()) {
     if (sweep.sweep(clock)) continue;

@@ -48,7 +48,7 @@ struct AfterEntry {
   }
 };
 
-/// An entry ends ahead of the newest waypoint, and a stop follows.
+/// An entry ends at the time of the newest waypoint or later, and a stop follows.
 struct EnteringAhead {
   AfterEntry after{};
   std::size_t known = 0;       ///< number of waypoints that the entry used

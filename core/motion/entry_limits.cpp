@@ -38,10 +38,10 @@ void EntrySearch::write_of_dimensions(const auto& velocity_of, const auto& accel
 void EntrySearch::restart(std::size_t first, const Instant& from, const Instant& end) noexcept {
   restart(first);
   former_end_ = end.time;
-  build_entry(from, end, behind_);
+  build_entry(from, end, later_);
   constexpr double kSlack = 1 + 1e-9;
   const auto peak = [&](std::size_t d, int derivative) {
-    const SegmentPart part = part_of(behind_);
+    const SegmentPart part = part_of(later_);
     const auto range =
         range_of(part.order, part.coefficients, part.dimensions, d, derivative, part.from, part.to);
     return std::abs(range.largest().value) * kSlack;

@@ -24,7 +24,7 @@ EntrySearch::EntrySearch(std::size_t dimensions, DimensionKinds kinds)
       end_state_(dimensions),
       rest_(dimensions),
       entry_(dimensions),
-      behind_(dimensions),
+      later_(dimensions),
       extrapolation_(dimensions) {
   allowed_.velocity.resize(dimensions);
   allowed_.acceleration.resize(dimensions);
@@ -47,10 +47,10 @@ void EntrySearch::restart(std::size_t first) noexcept {
 
 EntrySearch::Outcome EntrySearch::search(const SlidingWindow& target, const Instant& from,
                                          const EntryRules& rules, int& tries) noexcept {
-  knows_behind_ = false;
+  knows_after_ = false;
   const Outcome at_knots = search_knots(target, from, rules, tries);
   if (at_knots != Outcome::none || !rules.goes_beyond) return at_knots;
-  const Outcome beyond = search_beyond(target, from, rules, tries);
+  const Outcome beyond = search_ahead(target, from, rules, tries);
   const bool falls_back = beyond == Outcome::none && rules.falls_back;
   return falls_back ? fall_back(target, from, rules) : beyond;
 }
@@ -65,14 +65,14 @@ EntrySearch::Outcome EntrySearch::search_knots(const SlidingWindow& target, cons
     const Verdict verdict = judge(from, rules, tries);
     if (verdict == Verdict::untried) return Outcome::more;
     if (verdict == Verdict::exceeds) continue;
-    if (keeps_behind(target, rules.of_path())) return Outcome::found;
+    if (keeps_after(target, rules)) return Outcome::found;
     if (!fallback_knot_) fallback_knot_ = next_knot_;
   }
   return Outcome::none;
 }
 
-EntrySearch::Outcome EntrySearch::search_beyond(const SlidingWindow& target, const Instant& from,
-                                                const EntryRules& rules, int& tries) noexcept {
+EntrySearch::Outcome EntrySearch::search_ahead(const SlidingWindow& target, const Instant& from,
+                                               const EntryRules& rules, int& tries) noexcept {
   extrapolation_.begin(target);
   const Time to_newest = target.time(target.knots() - 1) - from.time;
   const bool guesses = is_guess(target);
@@ -88,8 +88,8 @@ EntrySearch::Outcome EntrySearch::search_beyond(const SlidingWindow& target, con
       is_longest_ = was_longest;
       return Outcome::more;
     }
-    if (verdict == Verdict::passes && keeps_beyond(*rules.limits)) return Outcome::found;
-    if (is_longest_ && passes_at_last(from, rules) && keeps_beyond(*rules.limits)) {
+    if (verdict == Verdict::passes && keeps_ahead(*rules.limits)) return Outcome::found;
+    if (is_longest_ && passes_at_last(from, rules) && keeps_ahead(*rules.limits)) {
       return Outcome::found;
     }
   }
@@ -165,18 +165,22 @@ EntrySearch::Verdict EntrySearch::judge(const Instant& from, const EntryRules& r
   return passes(from) ? Verdict::passes : Verdict::exceeds;
 }
 
-/// Whether all segments after the knot at which the entry ends respect the limits. The first call
-/// of a search finds the last segment that exceeds a limit; the next calls use this result.
-bool EntrySearch::keeps_behind(const SlidingWindow& target, const MotionLimits& limits) noexcept {
-  if (!knows_behind_) {
-    knows_behind_ = true;
-    last_beyond_.reset();
-    for (std::size_t i = target.knots() - 1; i > *end_.knot && !last_beyond_; --i) {
-      target.segment(i - 1, behind_);
-      if (!keeps_within(limits, &kinds_, behind_)) last_beyond_ = i - 1;
+/// Whether all segments after the knot at which the entry ends respect the limits, and the stop
+/// after the newest knot if the rules compare it. The first call of a search finds the last segment
+/// that exceeds a limit; the next calls use this result.
+bool EntrySearch::keeps_after(const SlidingWindow& target, const EntryRules& rules) noexcept {
+  if (!knows_after_) {
+    knows_after_ = true;
+    last_exceeding_.reset();
+    target.segment(target.knots() - 1, later_);
+    stop_exceeds_ = rules.checks_stop &&
+                    excess_of_stop(target, later_, StopBounds::limited, rest_.ref().position);
+    for (std::size_t i = target.knots() - 1; i > *end_.knot && !last_exceeding_; --i) {
+      target.segment(i - 1, later_);
+      if (!keeps_within(rules.of_path(), &kinds_, later_)) last_exceeding_ = i - 1;
     }
   }
-  return !last_beyond_ || *last_beyond_ < *end_.knot;
+  return !stop_exceeds_ && (!last_exceeding_ || *last_exceeding_ < *end_.knot);
 }
 
 /// Whether the rest of the line respects the limits of rotations, whose angular velocity changes
@@ -186,13 +190,13 @@ bool EntrySearch::rotations_keep_line(const MotionLimits& limits) noexcept {
   const Instant to = extrapolation_.line_end_state();
   build_segment(SegmentForm::cubic,
                 {end_.state.time, end_.state.position, end_.state.velocity, {}, {}},
-                {to.time, to.position, to.velocity, {}, {}}, behind_);
-  return keeps_within(limits, &kinds_, behind_);
+                {to.time, to.position, to.velocity, {}, {}}, later_);
+  return keeps_within(limits, &kinds_, later_);
 }
 
 /// Whether the rest of the line and the stop segment respect the position bounds. They respect all
 /// other limits by construction, but for rotations.
-bool EntrySearch::keeps_beyond(const MotionLimits& limits) noexcept {
+bool EntrySearch::keeps_ahead(const MotionLimits& limits) noexcept {
   if (!rotations_keep_line(limits)) return false;
   if (limits.lower.empty() && limits.upper.empty()) return true;
   // Each dimension moves in one direction only, so that its position at rest is the farthest.
@@ -212,7 +216,7 @@ bool EntrySearch::passes(const Instant& from) noexcept {
 
 /// The same without the shown limits: for entries of at least kLongest.
 bool EntrySearch::passes_at_last(const Instant& from, const EntryRules& rules) noexcept {
-  if (rules.shown == nullptr) return false;
+  if (rules.shown == nullptr || ends_outside(*rules.limits)) return false;
   EntryRules given = rules;
   given.shown = nullptr;
   allow(from, given);
@@ -248,7 +252,7 @@ bool EntrySearch::keeps_start(const SlidingWindow& target, const EntryRules& rul
     peaks[d] = shows_motion ? 0 : shown_at_start(target, d);
   }
   for (std::size_t i = 0; i + 1 < target.knots(); ++i) {
-    Segment& segment = i == 0 ? entry_ : behind_;
+    Segment& segment = i == 0 ? entry_ : later_;
     target.segment(i, segment);
     if (!keeps_within(rules.of_path(), &kinds_, segment)) return false;
     if (i < kStartFades) continue;

@@ -9,6 +9,7 @@
 #include "core/limits/position_range.hpp"
 #include "core/motion/entry_end.hpp"
 #include "core/motion/extrapolation.hpp"
+#include "core/motion/trial.hpp"
 #include "core/online/sliding_window.hpp"
 #include "core/polynomial/segment.hpp"
 #include "splinecast/dimension_kind.hpp"
@@ -32,6 +33,7 @@ struct EntryRules {
   bool stays_between = false;  ///< instead of the bounds, the positions at the ends count
   /// If no candidate passes, the entry may end where the target after it exceeds a limit.
   bool falls_back = true;
+  bool checks_stop = false;  ///< the target's stop counts, too: see excess_of_stop()
 
   [[nodiscard]] const MotionLimits& of_path() const noexcept {
     return path_limits != nullptr ? *path_limits : *limits;
@@ -109,7 +111,7 @@ class EntrySearch {
   /// three times the acceleration of the first three waypoints) if that is larger.
   [[nodiscard]] bool keeps_start(const SlidingWindow& target, const EntryRules& rules) noexcept;
 
-  /// The end found by the last search. Its spans are valid until the next call.
+  /// The end found by the last search. Its spans are valid until the next search.
   [[nodiscard]] const EntryEnd& end() const noexcept { return end_; }
 
   /// The entry found by the last search.
@@ -120,14 +122,14 @@ class EntrySearch {
 
   [[nodiscard]] Outcome search_knots(const SlidingWindow& target, const Instant& from,
                                      const EntryRules& rules, int& tries) noexcept;
-  [[nodiscard]] Outcome search_beyond(const SlidingWindow& target, const Instant& from,
-                                      const EntryRules& rules, int& tries) noexcept;
+  [[nodiscard]] Outcome search_ahead(const SlidingWindow& target, const Instant& from,
+                                     const EntryRules& rules, int& tries) noexcept;
   [[nodiscard]] Outcome fall_back(const SlidingWindow& target, const Instant& from,
                                   const EntryRules& rules) noexcept;
   [[nodiscard]] Verdict judge(const Instant& from, const EntryRules& rules, int& tries) noexcept;
-  [[nodiscard]] bool keeps_behind(const SlidingWindow& target, const MotionLimits& limits) noexcept;
+  [[nodiscard]] bool keeps_after(const SlidingWindow& target, const EntryRules& rules) noexcept;
   [[nodiscard]] bool rotations_keep_line(const MotionLimits& limits) noexcept;
-  [[nodiscard]] bool keeps_beyond(const MotionLimits& limits) noexcept;
+  [[nodiscard]] bool keeps_ahead(const MotionLimits& limits) noexcept;
   void allow(const Instant& from, const EntryRules& rules) noexcept;
   void write_of_dimensions(const auto& velocity_of, const auto& acceleration_of,
                            const auto& write) const noexcept;
@@ -147,15 +149,16 @@ class EntrySearch {
   double duration_ = 0;             ///< s, of the last end tried after the newest knot; 0: none yet
   bool is_longest_ = false;
   std::optional<std::size_t> fallback_knot_;
-  std::optional<std::size_t> last_beyond_;  ///< last segment of the target that exceeds a limit
-  bool knows_behind_ = false;
+  std::optional<std::size_t> last_exceeding_;  ///< last segment of the target that exceeds a limit
+  bool knows_after_ = false;
+  bool stop_exceeds_ = false;  ///< so does the target's stop, if the rules compare it
   EntryEnd end_;
   State end_state_;
   State rest_;            ///< scratch
   MotionLimits allowed_;  ///< of the current entry
   MotionLimits granted_;  ///< peaks of the recomputed entry, for dimensions without limits
   Segment entry_;
-  Segment behind_;  ///< scratch
+  Segment later_;  ///< scratch
   Extrapolation extrapolation_;
 };
 

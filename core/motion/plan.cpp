@@ -154,7 +154,7 @@ bool Plan::append(const Waypoint& waypoint) noexcept {
   if (!may_enter(end_)) return false;
   const bool begins = !is_searching(end_);
   set_searching(true);
-  if (unmet_since_ == Time::max()) note_met();
+  if (unmet_since_ == Time::max()) restart_unmet_since();
   return begins;
 }
 
@@ -167,41 +167,45 @@ Plan::Frozen Plan::freeze(Time t) noexcept {
     unmet_ = met_;
     origin_.reset();
   }
-  // This entry ends at the newest waypoint that it knew, which the curve has now met.
-  auto* const ahead = std::get_if<EnteringAhead>(&end_);
-  if (ahead != nullptr && ahead->ends_at_known && t >= ahead->after.end) {
-    passed_before_ += ahead->known - 1 - unmet_;
-    unmet_ = ahead->known;
-    ahead->ends_at_known = false;
-    note_met();
-  }
+  if (meets_known(t)) restart_unmet_since();
   if (is<OnTarget>(end_) && knots > 0) {
     window_.freeze(t);
     // The newest knot is frozen: readers follow the stop after it.
-    if (t < window_.time(knots - 1)) return Frozen::as_before;
+    if (t < window_.time(knots - 1)) return Frozen::nothing_to_do;
     wait_for_entry(knots);
     return Frozen::left_target;
   }
   const bool may_search = is<Waiting>(end_) && !is_searching(end_) && !has_given_up();
-  if (!may_search || knots <= unmet_ || t >= newest_time()) return Frozen::as_before;
+  if (!may_search || knots <= unmet_ || t >= newest_time()) return Frozen::nothing_to_do;
   // The entry would now begin later in the stop, in another state: candidates that failed before
   // may now keep the limits.
   set_searching(true);
   return Frozen::searches_again;
 }
 
-/// Makes the end of the curve final: only an entry can lead to the next waypoint. The curve meets
-/// the leading `met` knots of the run.
-void Plan::wait_for_entry(std::size_t met) noexcept {
-  end_ = Waiting{};
-  met_ = window_.knots();
-  unmet_ = met;
-  origin_.reset();
-  note_met();
+/// Notes that an entry ahead that ends at the newest waypoint it knew has ended there by t, and
+/// that the curve has met this waypoint. Returns whether it has.
+bool Plan::meets_known(Time t) noexcept {
+  auto* const ahead = std::get_if<EnteringAhead>(&end_);
+  if (ahead == nullptr || !ahead->ends_at_known || t < ahead->after.end) return false;
+  passed_before_ += ahead->known - 1 - unmet_;
+  unmet_ = ahead->known;
+  ahead->ends_at_known = false;
+  return true;
 }
 
-/// Records that the curve meets all knots before unmet_.
-void Plan::note_met() noexcept {
+/// Makes the end of the curve final: only an entry can lead to knot `unmet` or a later one. Those
+/// before it are met or passed over.
+void Plan::wait_for_entry(std::size_t unmet) noexcept {
+  end_ = Waiting{};
+  met_ = window_.knots();
+  unmet_ = unmet;
+  origin_.reset();
+  restart_unmet_since();
+}
+
+/// Counts from now on for how long the curve meets no waypoint: from the first unmet one on.
+void Plan::restart_unmet_since() noexcept {
   refused_until_ = unmet_since_ = Time::max();
   if (!counts_unmet_ || unmet_ >= window_.knots()) return;
   unmet_since_ = unmet_ >= window_.oldest_segment() ? window_.time(unmet_) : newest_time();
@@ -224,7 +228,7 @@ void Plan::start_on_target() noexcept {
 
 void Plan::start_by_entry() noexcept {
   end_ = Waiting{.is_searching = true};
-  note_met();
+  restart_unmet_since();
 }
 
 void Plan::leave_target_at(std::size_t knot) noexcept {
@@ -234,7 +238,10 @@ void Plan::leave_target_at(std::size_t knot) noexcept {
 }
 
 void Plan::enter(const EntryEnd& end, const std::optional<Instant>& from) noexcept {
-  if (from) set_origin(*from);
+  if (from) {
+    (void)meets_known(from->time);
+    set_origin(*from);
+  }
   if (end.knot) {
     end_ = Entering{.end = end.state.time, .known = end.known};
     met_ = *end.knot;

@@ -41,16 +41,17 @@ struct PlanState {
 /// ends at rest. An entry that ends at a waypoint is final once it has begun; one that ends ahead
 /// of the newest waypoint is planned again when a newer one comes.
 ///
-/// Each operation imposes a decision: it compares nothing with limits and searches for nothing (see
-/// PlanSearch). After each:
+/// Each operation imposes a decision: it refuses nothing because of limits and searches for nothing
+/// (see PlanSearch). After each:
 ///
 /// - the curve ends at rest: in the stop after the newest knot, in that of its origin or after its
 ///   entry, or where it has been ended; only a condition of end_on_target() may leave a velocity;
 /// - nothing before the frozen time has changed, except by a cut;
 /// - each waypoint of the run is met, passed over, or waits for an entry.
 ///
-/// The *origin* is the state in which the open entry begins or, without one, the stop of a run that
-/// has met no waypoint. Allocates only when constructed; one thread uses it.
+/// The *origin* is the state in which the open entry begins or, without one, in which the curve
+/// stops or rests without having come from the target. Allocates only when constructed; one thread
+/// uses it.
 class Plan {
  public:
   /// `counts_unmet`: unmet_since() is kept. Throws as SlidingWindow does.
@@ -59,14 +60,17 @@ class Plan {
   [[nodiscard]] const SlidingWindow& window() const noexcept { return window_; }
   [[nodiscard]] const End& end() const noexcept { return end_; }
 
-  /// Whether the curve ends with a piece of the target. Its first knot is number met() of the run.
+  /// Whether the curve ends with a piece of the target. Its first knot is number met() of the run,
+  /// which means nothing on a curve that is away from its target.
   [[nodiscard]] bool is_on_target() const noexcept { return core::is_on_target(end_); }
   [[nodiscard]] std::size_t met() const noexcept { return met_; }
 
-  /// The first knot of the run that the open entry passes over, or waits for.
+  /// The first knot of the run that the curve had not met or passed over before its open entry, or,
+  /// without one, before its end.
   [[nodiscard]] std::size_t unmet() const noexcept { return unmet_; }
 
-  /// Number of waypoints that entries have passed over, in all runs.
+  /// Number of waypoints that the curve passes over, in all runs, if no newer ones come: those that
+  /// wait for an entry count, so the number can fall.
   [[nodiscard]] std::size_t passed_over() const noexcept {
     return passed_before_ + passed_by_entry();
   }
@@ -128,7 +132,7 @@ class Plan {
   /// `scratch`: window().knots_to_restore() knots. O(K·D).
   void copy_from(const Plan& other, std::span<Knot> scratch) noexcept;
 
-  /// Begins the first run with a state instead of a waypoint.
+  /// Begins a run in a state instead of at a waypoint.
   void begin(const Instant& state) noexcept;
 
   /// Cuts the curve, and begins a run in a state; no entry of it ends earlier than `blend` after
@@ -140,13 +144,13 @@ class Plan {
   bool append(const Waypoint& waypoint) noexcept;
 
   enum class Frozen {
-    as_before,
+    nothing_to_do,
     left_target,     ///< the newest knot is frozen: only an entry leads to the next one
     searches_again,  ///< an entry that was not found may now be found, because it begins later
   };
   /// Freezes the curve up to the right end of the segment that contains t.
   Frozen freeze(Time t) noexcept;
-  /// The same, as recorded: freezes the leading `count` knots of the target. The end stays.
+  /// Freezes the leading `count` knots of the target, as recorded. The end stays as it is.
   void freeze_knots(std::size_t count) noexcept { window_.freeze_knots(count); }
 
   /// Lets the curve rest at the first waypoint. Requires is_start_open(), as do the next two.
@@ -185,8 +189,9 @@ class Plan {
 
  private:
   void set_origin(const Instant& state) noexcept;
-  void wait_for_entry(std::size_t met) noexcept;
-  void note_met() noexcept;
+  void wait_for_entry(std::size_t unmet) noexcept;
+  void restart_unmet_since() noexcept;
+  bool meets_known(Time t) noexcept;
   void mark_newest_met() noexcept;
   [[nodiscard]] std::size_t passed_by_entry() const noexcept;
 

@@ -45,7 +45,8 @@ EntryRules PlanSearch::rules(const Plan& plan, const EntryBegin& from) const noe
           .shown = from.shown,
           .least = blends ? std::max(options_.min_entry, until - begin) : options_.min_entry,
           .reach = &reach_,
-          .falls_back = !options_.keeps_limits};
+          .falls_back = !options_.keeps_limits,
+          .checks_stop = options_.checks_stops};
 }
 
 PlanSearch::Outcome PlanSearch::search(const Plan& plan, const EntryBegin& from, bool is_last,

@@ -96,10 +96,11 @@ class PlanSearch {
   /// Whether the first segments of a plan will be compared later: see keeps_start().
   [[nodiscard]] bool awaits_start_check(const Plan& plan) const noexcept;
 
-  /// The largest excess of a segment that exceeds a limit with this waypoint, but not without it;
-  /// nothing if there is no such segment. Compares only the segments that the waypoint changes and
-  /// that a curve that is settled until `settled` may still follow. `begins_stream`: the plan's
-  /// origin is the beginning of its stream. O(1) without limits, else O(K·D).
+  /// The largest excess of a segment that exceeds a limit with this waypoint; unless the options
+  /// keep the limits, one that exceeds it without the waypoint, too, does not count. Without such a
+  /// segment that of the stop after the waypoint, if the options check stops; else nothing.
+  /// Compares only what a curve that is settled until `settled` may still follow. `begins_stream`:
+  /// the plan's origin is the beginning of its stream. O(1) without limits, else O(K·D).
   [[nodiscard]] std::optional<TimedExcess> excess_with(const Plan& plan, const Waypoint& waypoint,
                                                        Time settled, bool begins_stream) noexcept {
     if (!has_limits_ || plan.window().knots() == 0) return std::nullopt;
@@ -108,7 +109,7 @@ class PlanSearch {
 
   /// Where a stop exceeds a limit of acceleration or jerk, or passes a bound.
   [[nodiscard]] std::optional<TimedExcess> excess_of_stop(const Segment& stop) noexcept {
-    return trial_.excess_of_stop(stop, false);
+    return trial_.excess_of_stop(stop);
   }
 
   /// Whether a plan that ends on its target with a condition rests at its newest knot and keeps the
@@ -123,7 +124,7 @@ class PlanSearch {
 
   /// Writes the stop after the newest waypoint in which a plan can be ended: the shortest that
   /// keeps the limits of acceleration and jerk at each rate of a law, if any dimension has a limit
-  /// of acceleration.
+  /// of acceleration. Call keeps_limits_with() first.
   void build_stop_at_end(const Plan& plan, Segment& out) noexcept;
 
  private:

@@ -11,7 +11,7 @@ namespace splinecast::core {
 
 /// The limits that a motion itself shows, where none are given: per dimension three times the 95 %
 /// quantile of the velocities and accelerations of its waypoints over the last kSpan of motion. The
-/// acceleration is at least the one that a stop from that velocity needs. Velocities are chord
+/// acceleration is at least the mean one of a stop from that velocity. Velocities are chord
 /// slopes over about kStep and accelerations are their differences, because the differences of
 /// neighbouring waypoints would be mostly noise.
 ///

@@ -13,6 +13,40 @@ TimedExcess timed(const Excess& excess, const Segment& segment) noexcept {
 
 }  // namespace
 
+std::optional<TimedExcess> excess_of_stop(const SlidingWindow& window, const Segment& stop,
+                                          StopBounds counted, std::span<double> scratch) noexcept {
+  constexpr double kSlack = 1 + 2e-6;
+  const MotionLimits& limits = window.limits_at_largest_rate();
+  const SegmentPart part = part_of(stop);
+  std::optional<TimedExcess> worst;
+  double ratio = kSlack;
+  const auto take = [&](const Excess& found) {
+    if (!(found.ratio > ratio)) return;
+    ratio = found.ratio;
+    worst = timed(found, stop);
+  };
+  for (const Excess& found : worst_excesses(limits, &window.kinds(), part)) {
+    if (found.kind == LimitKind::acceleration || found.kind == LimitKind::jerk) take(found);
+  }
+  const double end_of_stop = to_seconds(stop.right - stop.left);
+  evaluate_derivative(stop.order, stop.coefficients, end_of_stop, 0, scratch);
+  for (std::size_t d = 0; d < part.dimensions; ++d) {
+    const double begin = stop.coefficients[d];
+    const double end = scratch[d];
+    const bool rises = end > begin;
+    const auto& bounds = rises ? limits.upper : limits.lower;
+    if (counted == StopBounds::limited && limit_of(limits.acceleration, d) == 0) continue;
+    if (bounds.empty() || (rises ? end <= bounds[d] : end >= bounds[d] || end == begin)) continue;
+    take({.ratio = ratio_of(limits, LimitKind::position, d, end, bounds[d]),
+          .kind = LimitKind::position,
+          .dimension = d,
+          .value = end,
+          .limit = bounds[d],
+          .u = end_of_stop});
+  }
+  return worst;
+}
+
 Trial::Trial(std::size_t dimensions, const WindowOptions& options)
     : window_(dimensions, options),
       knots_(window_.knots_to_restore()),
@@ -52,42 +86,9 @@ bool Trial::exceeds_no_more(const MotionLimits& limits, std::size_t first,
   return true;
 }
 
-std::optional<TimedExcess> Trial::excess_of_stop(const Segment& stop, bool of_limited) noexcept {
-  constexpr double kSlack = 1 + 2e-6;
-  const MotionLimits& limits = window_.limits_at_largest_rate();
-  const SegmentPart part = part_of(stop);
-  std::optional<TimedExcess> worst;
-  double ratio = kSlack;
-  const auto take = [&](const Excess& found) {
-    if (!(found.ratio > ratio)) return;
-    ratio = found.ratio;
-    worst = timed(found, stop);
-  };
-  for (const Excess& found : worst_excesses(limits, &window_.kinds(), part)) {
-    if (found.kind == LimitKind::acceleration || found.kind == LimitKind::jerk) take(found);
-  }
-  const double end_of_stop = to_seconds(stop.right - stop.left);
-  evaluate_derivative(stop.order, stop.coefficients, end_of_stop, 0, values_);
-  for (std::size_t d = 0; d < part.dimensions; ++d) {
-    const double begin = stop.coefficients[d];
-    const double end = values_[d];
-    const bool rises = end > begin;
-    const auto& bounds = rises ? limits.upper : limits.lower;
-    if (of_limited && limit_of(limits.acceleration, d) == 0) continue;
-    if (bounds.empty() || (rises ? end <= bounds[d] : end >= bounds[d] || end == begin)) continue;
-    take({.ratio = ratio_of(limits, LimitKind::position, d, end, bounds[d]),
-          .kind = LimitKind::position,
-          .dimension = d,
-          .value = end,
-          .limit = bounds[d],
-          .u = end_of_stop});
-  }
-  return worst;
-}
-
 std::optional<TimedExcess> Trial::excess_of_newest_stop() noexcept {
   window_.segment(window_.knots() - 1, segment_);
-  return excess_of_stop(segment_, true);
+  return core::excess_of_stop(window_, segment_, StopBounds::limited, values_);
 }
 
 }  // namespace splinecast::core

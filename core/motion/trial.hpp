@@ -19,6 +19,15 @@ struct TimedExcess {
   Time time{};
 };
 
+/// Which dimensions' bounds count for a stop: of all, or of those with a limit of acceleration.
+enum class StopBounds { all, limited };
+
+/// Where a stop exceeds a limit of acceleration or jerk of a window, or passes a bound; nothing if
+/// it keeps them. Its velocity only falls. `scratch`: D values. O(D).
+[[nodiscard]] std::optional<TimedExcess> excess_of_stop(const SlidingWindow& window,
+                                                        const Segment& stop, StopBounds bounds,
+                                                        std::span<double> scratch) noexcept;
+
 /// A copy of a window that is changed first, to compare the change with the limits of the window.
 /// Allocates only when constructed; one thread uses it.
 class Trial {
@@ -43,13 +52,12 @@ class Trial {
   [[nodiscard]] bool exceeds_no_more(const MotionLimits& limits, std::size_t first,
                                      const SlidingWindow& unchanged) noexcept;
 
-  /// Where a stop exceeds a limit of acceleration or jerk, or passes a bound; nothing if it keeps
-  /// them. Its velocity only falls. `of_limited`: only bounds of dimensions with a limit of
-  /// acceleration count. O(D).
-  [[nodiscard]] std::optional<TimedExcess> excess_of_stop(const Segment& stop,
-                                                          bool of_limited) noexcept;
+  /// The excess of a stop, with the bounds of all dimensions.
+  [[nodiscard]] std::optional<TimedExcess> excess_of_stop(const Segment& stop) noexcept {
+    return core::excess_of_stop(window_, stop, StopBounds::all, values_);
+  }
 
-  /// The same for the stop after the copy's newest knot, with the bounds of limited dimensions.
+  /// The excess of the stop after the copy's newest knot, with the bounds of limited dimensions.
   [[nodiscard]] std::optional<TimedExcess> excess_of_newest_stop() noexcept;
 
  private:

@@ -192,9 +192,9 @@ void SlidingWindow::finish(const Condition& end) noexcept {
   if (newest == 0 && is_later_run_) return rest_at_only_knot();
   // Knot 0 may still change until K knots follow it.
   const bool from_start = newest < options_.settle || is_start_open(newest);
-  const ConditionKind own_end = options_.interpolant.method->traits.own_end;
-  solve(end.kind == ConditionKind::own ? Condition{.kind = own_end, .value = {}} : end,
-        from_start ? 0 : newest - (reach() - 1));
+  const std::size_t first = from_start ? 0 : newest - (reach() - 1);
+  if (end.kind != ConditionKind::own) return solve(end, first);
+  solve(Condition{.kind = options_.interpolant.method->traits.own_end, .value = {}}, first);
 }
 
 /// Sets the velocity of the only knot of a later run to 0, under any end condition: its segment is

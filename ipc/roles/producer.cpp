@@ -265,7 +265,7 @@ void Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
   if (!impl_->planner) {
     impl_->planner = std::make_unique<ipc::ReplacementPlanner>(
         solver.reader, ipc::window_options(solver.header), ipc::dimension_kinds(solver.header),
-        ipc::live_options(solver.header));
+        ipc::live_options(solver.header), ipc::beyond(solver.header));
   }
   out.begin = std::max(t, ipc::WaypointRingWriter::earliest_replacement(known));
   out.from_rest = false;

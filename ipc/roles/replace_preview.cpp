@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <variant>
 
 #include "core/forms/instant.hpp"
 #include "core/forms/stop.hpp"
@@ -40,20 +41,26 @@ void take_peaks(const core::SegmentPart& part, MotionPeaks& peaks) {
 ReplacementPlanner::ReplacementPlanner(const KnotBoardReader& board,
                                        const core::WindowOptions& options,
                                        const DimensionKinds& kinds,
-                                       const std::optional<LiveOptions>& live)
+                                       const std::optional<LiveOptions>& live, Beyond beyond)
     : board_(&board),
-      sampler_(board, live ? StreamClock::monotonic : StreamClock::recorded, kinds),
+      sampler_(board, live ? StreamClock::monotonic : StreamClock::recorded),
       shown_(board),
       plan_(board.dimensions(), core::with_kinds(options, kinds)),
       search_(board.dimensions(), plan_.window().options(),
-              {.is_live = live.has_value(), .min_entry = live ? live->min_entry : Time::zero()}),
+              {.is_live = live.has_value(),
+               .min_entry = live ? live->min_entry : Time::zero(),
+               .keeps_limits = live && beyond == Beyond::enter,
+               .checks_stops = live && beyond != Beyond::report}),
       state_(board.dimensions()),
       segment_(board.dimensions()) {}
 
 /// Reads the state at t and the shown motion before t. Returns false if the board has no state at t
 /// or the writer overtook every try.
 bool ReplacementPlanner::read_state(Time t) {
-  if (!has_values(sampler_.preview(t, state_.ref()))) return false;
+  const StateRef state = state_.ref();
+  if (!has_values(sampler_.preview(t, state))) return false;
+  // As the solver, on the turn on which the curve is.
+  plan_.window().kinds().normalise_quaternions(state.position, state.velocity, state.acceleration);
   Summary summary;
   for (int i = 0; i < kTries; ++i) {
     if (!board_->copy_summary(board_->look(), summary)) continue;
@@ -74,13 +81,13 @@ void ReplacementPlanner::take(const core::Segment& segment, MotionPeaks* entry,
   if (excess.ratio > out.worst.ratio) out.worst = excess;
 }
 
-void ReplacementPlanner::take_stop(ReplacePreview& out, const Instant& from) {
-  const Time length = core::build_stop_within(plan_.window().stop_rules(), from, segment_);
-  take(segment_, out.enters ? nullptr : &out.entry, out);
-  if (!out.enters) out.duration = length;
+/// Adds the stop from the begin of the run, if no entry was found.
+void ReplacementPlanner::take_stop(ReplacePreview& out) {
+  out.duration = core::build_stop_within(plan_.window().stop_rules(), plan_.origin(), segment_);
+  take(segment_, &out.entry, out);
 }
 
-/// Adds the entry that was found, and the stop after it, to the preview.
+/// Adds the entry that was found to the preview.
 void ReplacementPlanner::take_entry(ReplacePreview& out) {
   const core::EntryEnd& end = search_.end();
   out.enters = true;
@@ -96,7 +103,6 @@ void ReplacementPlanner::take_entry(ReplacePreview& out) {
   const bool meets_last = end.state.time == plan_.newest_time();
   if (meets_last) out.waypoint = knots - 1;
   out.passed_over = knots - (meets_last ? 1 : 0);
-  take_stop(out, end.state);  // the straight line before the stop adds no peaks
 }
 
 /// Adds the target's segments after the entry, up to number `end`, before they leave the window.
@@ -116,6 +122,13 @@ bool ReplacementPlanner::search(bool is_last, ReplacePreview& out) {
   if (search_.search(plan_, from, is_last, tries) != core::PlanSearch::Outcome::found) return false;
   take_entry(out);
   plan_.enter(search_.end(), std::nullopt);
+  // The straight line before the stop adds no peaks.
+  if (const auto* const ahead = std::get_if<core::EnteringAhead>(&plan_.end())) {
+    const Instant stop = plan_.stop_begin(*ahead, state_.ref().position);
+    core::build_stop(stop.time, plan_.stop_after_entry(*ahead), stop.position, stop.velocity,
+                     stop.acceleration, segment_);
+    take(segment_, nullptr, out);
+  }
   return true;
 }
 
@@ -156,7 +169,7 @@ void ReplacementPlanner::plan(std::span<const Waypoint> waypoints, Time blend,
   plan_.cut(core::instant_of(out.begin, state_), blend);
   if (find_entry(waypoints, out)) return;
   out.passed_over = waypoints.size();
-  take_stop(out, plan_.origin());
+  take_stop(out);
 }
 
 std::optional<ReplacementBegin> begin_of_run(const KnotBoardReader& board, Word item) {

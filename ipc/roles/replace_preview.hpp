@@ -18,9 +18,10 @@
 
 namespace splinecast::ipc {
 
-/// Plans a replacement as the stream's solver would, from its board, without changing anything. The
-/// shown motion comes from the waypoints that are still on the board: on a stream without limits, a
-/// solver that has seen more may plan differently.
+/// Plans a replacement as the stream's solver would, from its board, without changing anything. A
+/// solver may plan differently on a stream without limits, because it has seen more of the shown
+/// motion than is on the board, and where the present curve exceeds a bound, because its entry may
+/// go as far as that. Waypoints beyond a limit are neither refused nor left out.
 ///
 /// Allocates when constructed, and in the result as it grows. One thread uses it.
 class ReplacementPlanner {
@@ -28,7 +29,8 @@ class ReplacementPlanner {
   /// `board` outlives the planner; the other arguments are those of its solver; `live` is set for a
   /// live stream.
   ReplacementPlanner(const KnotBoardReader& board, const core::WindowOptions& options,
-                     const DimensionKinds& kinds, const std::optional<LiveOptions>& live);
+                     const DimensionKinds& kinds, const std::optional<LiveOptions>& live,
+                     Beyond beyond);
 
   /// Plans the replacement of everything after out.begin by these waypoints, which the ring would
   /// accept; with out.from_rest it begins at rest there. O(n·K·D) and at most 170 candidates of an
@@ -41,7 +43,7 @@ class ReplacementPlanner {
   [[nodiscard]] bool find_entry(std::span<const Waypoint> waypoints, ReplacePreview& out);
   void take_segments(std::size_t end, ReplacePreview& out);
   void take(const core::Segment& segment, MotionPeaks* entry, ReplacePreview& out) const;
-  void take_stop(ReplacePreview& out, const Instant& from);
+  void take_stop(ReplacePreview& out);
   void take_entry(ReplacePreview& out);
 
   const KnotBoardReader* board_;

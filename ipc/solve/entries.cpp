@@ -3,8 +3,8 @@
 #include "core/forms/stop.hpp"
 #include "ipc/solve/published_curve.hpp"
 
-/// Plans the entries of a published curve onto its target. A plan is in scratch memory; `enter`
-/// makes it part of the curve.
+/// Searches for the entries of a published curve onto its target. An entry that is found is in
+/// memory of the search; `enter` makes it part of the curve.
 namespace splinecast::ipc {
 
 /// Finds the limits that a live motion shows. If this solver has taken over the stream, first reads

@@ -78,15 +78,15 @@ Outcome PublishedCurve::search_from_knot(const Waypoint& waypoint, int& tries) n
 }
 
 /// Takes a waypoint with which the target exceeds a limit. The entry is searched for before
-/// anything is changed: verification freezes the knots that the curve meets, and no others.
+/// anything is changed: only the knots that the curve meets may be frozen.
 Followed PublishedCurve::leave(const Waypoint& waypoint, Word item, Time settled, Time keep,
                                int& tries) noexcept {
   if (has_changes()) return Followed::waits;  // the entry begins in the committed curve
   is_prepared_ = false;
   look_at_shown();
   if (search_.awaits_start_check(plan_) && !search_.keeps_start(plan_, shown())) {
-    append(waypoint, item);
     check_start(settled, true);
+    append(waypoint, item);
     return Followed::taken;
   }
   if (leaving_item_ != item) {
@@ -118,7 +118,7 @@ void PublishedCurve::leave_at(std::size_t knot, const Waypoint& waypoint, Word i
 }
 
 /// Takes a waypoint if an entry that begins where the curve rests can lead to the target at its
-/// time or later; else the plan stays as it is.
+/// time or later; else only records that the curve has given up.
 Followed PublishedCurve::follow_from_rest(const Waypoint& waypoint, Word item, Time settled,
                                           Time keep, int& tries) noexcept {
   if (has_changes()) return Followed::waits;  // the entry begins in the committed curve
@@ -141,7 +141,7 @@ Followed PublishedCurve::follow_from_rest(const Waypoint& waypoint, Word item, T
   if (outcome == Outcome::none) return Followed::refused;
   append(waypoint, item);
   enter();
-  plan_.resume_at(waypoint.time);
+  if (!is_on_target()) plan_.resume_at(waypoint.time);
   return Followed::taken;
 }
 

@@ -73,6 +73,7 @@ bool PublishedCurve::search_end_from_knots(Time settled, int& tries) noexcept {
   for (std::size_t& knot = end_search_->knot; knot > plan_.met(); --knot) {
     const Time t = published_->time_hint(writer_.number_of(plan_, knot - 1));
     if (t < settled) break;
+    if (--tries < 0) return false;  // a candidate that cannot pass costs no try, but its reach does
     if (!find_cut(t) || !find_reach(plan_.newest_time())) return true;
     const Instant from = begin_state();
     const auto outcome =
@@ -123,14 +124,15 @@ bool PublishedCurve::search_end(Time settled, int& tries) noexcept {
       writer_.ended_by_entry(plan_, origin.number);
       return true;
     }
-    if (is_from_rest || from.time >= writer_.rest()) {
+    // The stop of a state that is not committed yet is not on the board.
+    const bool is_stop_unknown = !is_from_rest && writer_.origin().is_new;
+    if (!is_stop_unknown && (is_from_rest || from.time >= writer_.rest())) {
       plan_.end_as({EndKind::in_stop});
       return true;
     }
-    // The stop of a state that is not committed yet is not on the board.
     end_search_ = EndSearch{EndAttempt::from_rest};
     search_.restart_at(0);
-    if (writer_.origin().is_new) return false;
+    if (is_stop_unknown) return false;
     if (!prepare_end(settled)) return true;
   }
 }

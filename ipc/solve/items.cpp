@@ -57,7 +57,7 @@ Time StreamSolver::time_of_cut(Time t) const noexcept {
 
 /// Whether the law holds the stream where the curve can be cut.
 bool StreamSolver::can_rest() const noexcept {
-  return step_.rest && curve_.has_begun() && *step_.rest >= curve_.earliest_cut();
+  return step_.held_from && curve_.has_begun() && *step_.held_from >= curve_.earliest_cut();
 }
 
 /// Cuts the curve at t and begins a run there: from rest where the law holds, instead of what has
@@ -65,7 +65,7 @@ bool StreamSolver::can_rest() const noexcept {
 void StreamSolver::begin_run(Time t, const RunBegin& how) noexcept {
   outcomes_.cut(curve_.progress(), t);
   if (how.is_from_rest) step_.settled_until = t;
-  step_.rests = step_.rests || how.is_from_rest;
+  step_.begins_held = step_.begins_held || how.is_from_rest;
   curve_.begin_run(t, how);
   summary_.starved = false;
   summary_.newest_time = t;
@@ -73,10 +73,10 @@ void StreamSolver::begin_run(Time t, const RunBegin& how) noexcept {
 
 /// Ends a stop that is executed when the law holds the machine.
 void StreamSolver::rest_where_held() noexcept {
-  if (!can_rest() || *step_.rest > step_.settled_until || summary_.finished) return;
-  const Time latest = latest_from_rest(*step_.rest, step_.settled_until, live_->freeze_ahead);
-  if (curve_.is_stopping(*step_.rest, latest))
-    begin_run(*step_.rest, {.has_waypoints = false, .is_from_rest = true});
+  if (!can_rest() || *step_.held_from > step_.settled_until || summary_.finished) return;
+  const Time latest = latest_from_rest(*step_.held_from, step_.settled_until, live_->freeze_ahead);
+  if (curve_.is_stopping(*step_.held_from, latest))
+    begin_run(*step_.held_from, {.has_waypoints = false, .is_from_rest = true});
 }
 
 /// Reads what the stoppers request. If one holds the stream and the curve does not stop yet, begins
@@ -87,8 +87,8 @@ bool StreamSolver::stops_where_held() noexcept {
   summary_.holders = stops_.holders();
   summary_.holder = stops_.holder();
   if (!is_held() || !curve_.has_begun() || summary_.finished) return false;
-  const bool rests = can_rest() && *step_.rest <= step_.settled_until;
-  const Time t = rests ? *step_.rest : time_of_cut(Time::min());
+  const bool rests = can_rest() && *step_.held_from <= step_.settled_until;
+  const Time t = rests ? *step_.held_from : time_of_cut(Time::min());
   if (curve_.is_stop() && t >= curve_.plan().newest_time()) return false;
   summary_.cut_off += curve_.waypoints_after(t);
   begin_run(t, {.has_waypoints = false,
@@ -206,9 +206,9 @@ void StreamSolver::count_excess(std::optional<LimitExcess> excess, Word number,
 void StreamSolver::take_replacement(Word number) noexcept {
   // A replacement is never too late. A stop is a revision of its own, which is committed sooner
   // than a full batch.
-  const bool rests = can_rest() && begins_at_rest(item_.time, *step_.rest, step_.settled_until,
+  const bool rests = can_rest() && begins_at_rest(item_.time, *step_.held_from, step_.settled_until,
                                                   live_->freeze_ahead);
-  const Time t = rests ? *step_.rest : time_of_cut(item_.time);
+  const Time t = rests ? *step_.held_from : time_of_cut(item_.time);
   const bool has_begun = curve_.has_begun();  // else there is nothing to replace
   if (has_begun && !is_time_in_range(t)) {
     return refuse_replacement(number, Refusal::too_far_apart);
@@ -270,7 +270,7 @@ void StreamSolver::take_plan(Word number) noexcept {
   // Looks for the entry onto the first waypoint before the newer ones push it out of the window.
   for (const Waypoint& waypoint : path.waypoints()) {
     curve_.append(waypoint, number);
-    curve_.plan(step_.settled_until, step_.keep, false, step_.tries);
+    curve_.advance_search(step_.settled_until, step_.keep, false, step_.tries);
   }
   summary_.starved = false;
   summary_.newest_time = path.waypoints().back().time;

@@ -53,7 +53,7 @@ void KnotWriter::restore(const core::Plan& plan, const Summary& summary, Time re
 
 void KnotWriter::prefetch(const core::Plan& plan) const noexcept {
   if (!plan.is_on_target()) return;
-  board_->prefetch(number_of(plan, std::max(open_, plan.met())), newest_ + 1);
+  board_->prefetch(number_of(plan, std::max(first_open_, plan.met())), newest_ + 1);
 }
 
 bool KnotWriter::has_room(const core::Plan& plan, std::size_t knots, Time keep) const noexcept {
@@ -89,7 +89,7 @@ void KnotWriter::cut(const core::Plan& plan, const CurveOrigin& origin) noexcept
   run_ = origin.number;
   run_item_ = 0;
   is_entry_new_ = false;
-  kept_ = open_ = 0;
+  kept_ = first_open_ = 0;
   note_change(plan.origin().time);
 }
 
@@ -98,13 +98,13 @@ void KnotWriter::appended(const core::Plan& plan, Word item) noexcept {
   has_changes_ = true;
   // Settled knots leave the window and are written once, with their final values.
   const std::size_t settled = plan.window().settled_knots();
-  if (open_ >= settled) return;
+  if (first_open_ >= settled) return;
   if (!plan.is_on_target()) {
     write_passed(plan, passed_.written, settled);
   } else {
-    write_knots(plan, std::max(open_, plan.met()), settled);
+    write_knots(plan, std::max(first_open_, plan.met()), settled);
   }
-  open_ = settled;
+  first_open_ = settled;
 }
 
 void KnotWriter::left_target(const core::Plan& plan) noexcept {
@@ -124,7 +124,7 @@ void KnotWriter::rests_at_start(const core::Plan& plan) noexcept {
 }
 
 void KnotWriter::starts_on_target(const core::Plan& plan) noexcept {
-  placed_ = kept_ = open_ = 0;
+  placed_ = kept_ = first_open_ = 0;
   met_number_ = 1;
   origin_ = {};
   note_change(plan.window().time(0));
@@ -141,7 +141,7 @@ void KnotWriter::entered(const core::Plan& plan, std::optional<Word> origin) noe
   placed_ = plan.met();
   if (plan.is_on_target()) {
     met_number_ = origin_.number + 1;
-    kept_ = open_ = placed_;
+    kept_ = first_open_ = placed_;
   }
   note_change(plan.origin().time);
 }
@@ -156,18 +156,18 @@ void KnotWriter::ended_on_target(const core::Plan& plan) noexcept {
   has_changes_ = true;
   // A full stop changes the form of the last segment: its left knot is written again.
   const std::size_t knots = plan.window().knots();
-  open_ = std::min(open_, knots - std::min<std::size_t>(knots, 2));
+  first_open_ = std::min(first_open_, knots - std::min<std::size_t>(knots, 2));
 }
 
 void KnotWriter::ended_in_stop(const core::Plan& plan) noexcept {
   has_changes_ = true;
-  open_ = std::min(open_, plan.window().knots() - 1);
+  first_open_ = std::min(first_open_, plan.window().knots() - 1);
 }
 
 void KnotWriter::keep_settled(const core::Plan& plan) noexcept {
   kept_ = plan.window().settled_knots();
   // The next knot changes the segment that begins at the newest one.
-  open_ = std::min(kept_, std::max<std::size_t>(placed_, 1) - 1);
+  first_open_ = std::min(kept_, std::max<std::size_t>(placed_, 1) - 1);
 }
 
 /// Removes from the range of knots the oldest ones, which the newest ones have overwritten.

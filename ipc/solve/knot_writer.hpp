@@ -154,11 +154,11 @@ class KnotWriter {
   bool has_changes_ = false;
   Time changed_from_ = Time::max();
   std::size_t committed_knots_ = 0;  ///< number of knots of the run at the last commit
-  std::size_t kept_ = 0;  ///< number of leading knots of the run unchanged since the commit
-  std::size_t open_ = 0;  ///< number of leading knots of the run that are written with final values
-  /// Number of leading knots of the run in the numbered slots, if the curve ends on the target.
-  std::size_t placed_ = 0;
-  Word met_number_ = 1;  ///< number of knot plan.met() of the run
+  // Numbers of leading knots of the run that
+  std::size_t kept_ = 0;        ///< have settled, as of the last freeze: unchanged since the commit
+  std::size_t first_open_ = 0;  ///< are written with their final values
+  std::size_t placed_ = 0;      ///< have been written to the numbered slots
+  Word met_number_ = 1;         ///< number of knot plan.met() of the run
   PassedKnots passed_;
   std::vector<double> values_;  ///< scratch
   core::Segment segment_;       ///< scratch

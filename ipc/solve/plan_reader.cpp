@@ -29,7 +29,10 @@ bool is_sound(const core::Knot& knot) noexcept {
 /// Whether a summary of an unfinished stream describes a possible run.
 bool describes_a_run(const Summary& summary) noexcept {
   if (summary.course >= kCourses) return false;
-  if (summary.newest == 0) return summary.run_knots == 0 && !summary.is_later_run;
+  if (summary.newest == 0) {
+    return summary.run_knots == 0 && summary.met == 0 && summary.unmet == 0 &&
+           !summary.is_later_run;
+  }
   const bool is_on_target = static_cast<Course>(summary.course) == Course::on_target ||
                             static_cast<Course>(summary.course) == Course::entering;
   const bool has_piece =
@@ -139,7 +142,7 @@ bool PlanReader::read_origin(Word number) noexcept {
 bool PlanReader::read_ahead(core::EnteringAhead& ahead, Word& number) noexcept {
   if (!knot_.note.arrives && (number < 2 || !read_knot(--number))) return false;
   if (!knot_.note.arrives || number < 2) return false;
-  ahead.after = {.end = knot_.time};
+  ahead.after = {.end = knot_.time};  // the other times are needed where an entry is written only
   core::copy_values({knot_.time, knot_.waypoint(), knot_.velocity(), knot_.acceleration()},
                     entry_end_);
   state_.entry_end = core::instant_of(knot_.time, entry_end_);

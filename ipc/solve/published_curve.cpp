@@ -53,7 +53,7 @@ void PublishedCurve::freeze(Time t) noexcept {
     case core::Plan::Frozen::searches_again:
       search_.restart(plan_);
       break;
-    case core::Plan::Frozen::as_before:
+    case core::Plan::Frozen::nothing_to_do:
       break;
   }
   writer_.keep_settled(plan_);
@@ -98,6 +98,7 @@ void PublishedCurve::begin_run(Time t, const RunBegin& how) noexcept {
                       .is_corner = how.is_from_rest,
                       .stopped_by = how.stopped_by});
   is_prepared_ = false;
+  end_search_.reset();
   shown_.begin_cut();
   if (how.has_waypoints) {
     shown_.replace_from_next();

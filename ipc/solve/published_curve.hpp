@@ -45,11 +45,13 @@ struct EndSearch {
 /// what the plan does next. Has no ring and no clock; the caller checks the waypoints.
 ///
 /// A solver that takes over, and one that has discarded a revision, continue from the last commit:
-/// nothing else is remembered. Allocates only when constructed; one thread uses it.
+/// but for the shown motion nothing else is remembered. Of a finished curve only writer and summary
+/// are valid then. Allocates only when constructed; one thread uses it.
 class PublishedCurve {
  public:
-  /// Maximum number of candidates that one step builds and compares with the limits: bounds the
-  /// duration of a step.
+  /// Maximum number of candidates that the searches of one step build and compare with the limits.
+  /// Besides, a step may try each knot of the window before a cut or an end, and the fallback and
+  /// the longest entries of a search.
   static constexpr int kTriesPerStep = 4;
   /// Knots that a stop may add.
   static constexpr std::size_t kAddedByStop = 2;
@@ -79,7 +81,7 @@ class PublishedCurve {
 
   [[nodiscard]] const DimensionKinds& kinds() const noexcept { return window().kinds(); }
 
-  /// Whether anything has been changed since the last commit, and whether there is a curve.
+  /// Whether there is anything to write since the last commit, and whether there is a curve.
   [[nodiscard]] bool has_changes() const noexcept { return writer_.has_changes(); }
   [[nodiscard]] bool has_begun() const noexcept { return writer_.newest() > 0 || has_changes(); }
 
@@ -94,7 +96,7 @@ class PublishedCurve {
            t < plan_.origin().time;
   }
 
-  /// Number of waypoints of the run that the committed curve is on after t.
+  /// Number of waypoints of the run that the committed curve meets after t.
   [[nodiscard]] Word waypoints_after(Time t) const noexcept;
 
   /// Whether the run is a stop that moves after t, and begins at `latest` or earlier.
@@ -134,10 +136,8 @@ class PublishedCurve {
   /// uncommitted changes. Changes nothing if the board is damaged.
   void begin_run(Time t, const RunBegin& how) noexcept;
 
-  /// Finds the largest excess of a segment that exceeds a limit with this waypoint, but not without
-  /// it; nothing if there is no such segment. Compares only the segments that the waypoint changes
-  /// and that a curve that is settled until `settled` may still follow. O(1) without limits, else
-  /// O(K·D). Does not change the curve.
+  /// Where the curve with this waypoint exceeds a limit: see PlanSearch::excess_with(). O(1)
+  /// without limits, else O(K·D). Does not change the curve.
   [[nodiscard]] std::optional<LimitExcess> excess_with(const Waypoint& waypoint,
                                                        Time settled) noexcept {
     return search_.has_limits() ? find_excess(waypoint, settled) : std::nullopt;
@@ -157,11 +157,11 @@ class PublishedCurve {
   /// Appends a waypoint to the run; `item` is its number in the ring.
   void append(const Waypoint& waypoint, Word item) noexcept;
 
-  /// Searches for an entry if one is needed. The entry begins at `settled`, or where the open entry
-  /// begins if that has not settled. Decrements `tries` for each candidate: see kTriesPerStep.
-  /// `is_last`: no further waypoint can be taken in this step, so the search uses the known ones.
-  /// Does not overwrite segments that end after `keep`.
-  void plan(Time settled, Time keep, bool is_last, int& tries) noexcept {
+  /// Continues the search for an entry, if one is needed. The entry begins at `settled`, or where
+  /// the open entry begins if that has not settled. Decrements `tries` for each candidate: see
+  /// kTriesPerStep. `is_last`: no further waypoint can be taken in this step, so the search uses
+  /// the known ones. Does not overwrite segments that end after `keep`.
+  void advance_search(Time settled, Time keep, bool is_last, int& tries) noexcept {
     if (core::is_searching(plan_.end()) || window().options().held_before_start) {
       look_for_entry(settled, keep, is_last, tries);
     }
@@ -183,21 +183,24 @@ class PublishedCurve {
   [[nodiscard]] bool decide_start(Time t, Time settled, Time keep, int& tries) noexcept;
 
   /// Searches for an entry onto the waypoints that are known, and makes it part of the curve.
-  /// Requires may_enter_before(). So also a few waypoints between two stops are met.
+  /// Requires may_enter_before(). Otherwise a few waypoints between two stops would never be met.
   void enter_before_cut(Time settled, Time keep) noexcept;
 
-  /// Ends the curve. The first of these that keeps the limits:
+  /// Ends the curve. Decides its start first, if that is open; a curve away from its target may
+  /// enter onto it at an earlier waypoint first. Then the first of these that keeps the limits:
   ///
-  /// 1. at the newest knot, with the boundary condition `end`; on a recorded stream always;
+  /// 1. at the newest knot, with the boundary condition `end`: on a recorded stream always, on a
+  ///    live one if the curve rests there;
   /// 2. by slowing down on the path, from the latest knot after `settled` that allows it: the curve
   ///    rests at the newest knot, later than that knot's time;
   /// 3. by an entry that begins at the latest knot after `settled` that allows it and rests at the
   ///    newest one, at its time or later;
-  /// 4. in the stop after the newest knot, as it is published.
+  /// 4. in the shortest stop after the newest knot that keeps the limits of acceleration and jerk;
+  ///    without a limit of acceleration, in the published one.
   ///
   /// If the segment before the newest knot has settled, or the published curve does not meet that
-  /// knot: by an entry from `settled` on; else by one of at most EntrySearch::kLongest from where
-  /// the published stop rests; else in that stop.
+  /// knot: by an entry from `settled` on, or from the newest knot if that is later; else by one of
+  /// at most EntrySearch::kLongest from where the published stop rests; else in that stop.
   ///
   /// Returns false if the search has not ended: then call finish() again in the next step, after
   /// the commit. Does not overwrite segments that end after `keep`.

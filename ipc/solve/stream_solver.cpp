@@ -159,13 +159,14 @@ void StreamSolver::take_back(Word misses) noexcept {
 
 /// Discards an unsound revision, and halves the number of items of the next one. If the revision
 /// had only one item, marks that item to be refused. If it had only the entry before a replacement,
-/// the replacement is taken without it.
+/// the replacement is taken without it. A revision with neither is sound: the knots of other
+/// entries and of stops have values that sound revisions have had.
 void StreamSolver::suspect_items() noexcept {
   unsound_.until = std::max(unsound_.until, summary_.consumed);
   if (step_.entry_before) {
     unsound_.entry = step_.entry_before;
   } else if (step_.batch > 1) {
-    unsound_.most_items = std::min<Word>(step_.batch, max_batch_) / 2;
+    unsound_.most_items = std::max<Word>(std::min<Word>(step_.batch, max_batch_) / 2, 1);
   } else {
     unsound_.item = summary_.consumed - 1;
   }
@@ -178,9 +179,9 @@ void StreamSolver::freeze(const Clock& clock, Time now) noexcept {
   step_.has_starved = false;
   if (!live_) return;
   step_.settled_until = std::max(step_.settled_until, clock.latest(now, live_->freeze_ahead));
-  step_.rests = false;
-  step_.rest.reset();
-  if (const auto held = clock.held()) step_.rest = *held + Time(1);
+  step_.begins_held = false;
+  step_.held_from.reset();
+  if (const auto held = clock.held()) step_.held_from = *held + Time(1);
   if (!curve_.has_begun() || summary_.finished) return;
   curve_.freeze(step_.settled_until);
   summary_.low_water =
@@ -234,13 +235,13 @@ Word StreamSolver::consume(Time now) noexcept {
       break;
     }
     ++step_.batch;
-    curve_.plan(step_.settled_until, step_.keep, false, step_.tries);
+    curve_.advance_search(step_.settled_until, step_.keep, false, step_.tries);
     // The next waypoint would push an untried candidate out of the window.
     if (curve_.is_planning() && step_.tries <= 0) break;
   }
   // No further waypoint can be taken: searches with the known ones.
   if (is_blocked || summary_.consumed == step_.available) {
-    curve_.plan(step_.settled_until, step_.keep, true, step_.tries);
+    curve_.advance_search(step_.settled_until, step_.keep, true, step_.tries);
   }
   const bool waits = is_blocked && summary_.consumed == before && !curve_.has_changes();
   seen_ = waits || step_.available == before ? written : summary_.consumed;
@@ -288,8 +289,9 @@ bool StreamSolver::has_room(const RingItem& item) const noexcept {
 
 /// Searches the ring for a replacement that is due, and withdraws all items queued before it. They
 /// may be replacements that are not yet due, and waypoints for which the board has no room.
-/// Withdraws nothing if the replacement itself must wait for room, or for a start that is decided
-/// before it: returns true in that case.
+/// Withdraws nothing if the replacement itself must wait: for room, which the items before it may
+/// use meanwhile, or for the commit of a change or of a start before it. Returns whether it waits
+/// for a commit, so that no item is taken before that.
 bool StreamSolver::withdraw() noexcept {
   if (!curve_.has_begun() || summary_.finished) return false;
   replacements_.note(summary_.consumed, step_.available);
@@ -297,7 +299,7 @@ bool StreamSolver::withdraw() noexcept {
   const auto replacement = replacements_.due(time_of_cut(Time::min()), curve_.plan().newest_time());
   if (!replacement) return false;
   ring_->copy(*replacement, item_);
-  if (!has_room(item_)) return false;
+  if (!has_room(item_)) return curve_.has_changes();
   if (live_ && enters_before(*replacement)) return true;
   if (*replacement > summary_.consumed) {
     outcomes_.record(
@@ -329,11 +331,11 @@ Time StreamSolver::settled_by_commit() const noexcept {
 /// Lowers the settled word to where a run begins at rest, and reads the law again. If it does not
 /// hold there any more, the word becomes what it was.
 bool StreamSolver::still_rests(const Clock& clock) noexcept {
-  const Time settled = std::exchange(summary_.settled_until, *step_.rest);
-  board_->lower_settled(*step_.rest);
+  const Time settled = std::exchange(summary_.settled_until, *step_.held_from);
+  board_->lower_settled(*step_.held_from);
   (void)clock.now();
   const auto held = clock.held();
-  if (held && *held + Time(1) == *step_.rest) return true;
+  if (held && *held + Time(1) == *step_.held_from) return true;
   board_->store_settled(settled);
   return false;
 }
@@ -344,7 +346,7 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   curve_.write_summary(summary_);
   if (planner_ == nullptr) note_outcomes(curve_.progress(), summary_.consumed - consumed);
   // The commit time of a recorded stream is not compared with anything.
-  const bool is_free = !step_.rests || still_rests(clock);
+  const bool is_free = !step_.begins_held || still_rests(clock);
   summary_.committed =
       step_.is_timed ? clock.now() : std::max(summary_.committed, clock.about_now());
   if (!is_free || (live_ && summary_.changed_from <= summary_.committed)) {

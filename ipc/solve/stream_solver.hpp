@@ -43,11 +43,11 @@ struct LiveOptions {
 /// when the newest knot has been frozen, an entry leads from settled_until onto the waypoints; an
 /// entry also leads onto the waypoints of a replacement: see PublishedCurve. Directly before the
 /// commit the clock is read again: a revision that would change a part of the curve that may have
-/// been executed meanwhile is discarded, counted and solved again.
+/// been executed meanwhile is discarded and counted, and the next step solves it again.
 ///
 /// All published values are finite: a revision with a NaN, an infinity or a value out of the range
-/// that readers accept is discarded and solved again with fewer items, until the offending item is
-/// alone and is refused.
+/// that readers accept is discarded. The same step solves it again with fewer items, until the
+/// offending item is alone and is refused.
 ///
 /// On a stream with limits, the solver first tries each waypoint. If the curve with it exceeds a
 /// limit, the solver records the excess, and takes or refuses the waypoint as `beyond` specifies.
@@ -100,7 +100,8 @@ class StreamSolver {
   /// Whether a stopper holds the stream, as of the last step.
   [[nodiscard]] bool is_held() const noexcept { return stops_.holders() > 0; }
 
-  /// Takes the items in the ring, up to a bounded batch, and publishes the result as one revision.
+  /// Takes the items in the ring, up to a bounded batch, and publishes the result as one revision;
+  /// on a recorded stream as two, if an entry precedes a replacement.
   /// On a live stream it also stores settled_until when that is due, without a new revision.
   /// O(batch·K·D). For any content of the ring, a step takes a bounded time and at most
   /// as many items as the ring has; invalid items are refused. Data read back from the board are
@@ -136,15 +137,15 @@ class StreamSolver {
     Time settled_until = Time::min();  ///< it changes nothing before this time
     Time keep = Time::max();           ///< it overwrites no segment that ends after this time
     bool is_timed = false;
-    Time started{};              ///< host time when it began, if it is timed
-    std::optional<Time> rest{};  ///< the earliest time at which a held law allows a change
-    bool rests = false;          ///< a run begins at rest there in this revision
-    bool has_starved = false;    ///< the stream has begun to starve
-    int tries = 0;               ///< candidates of an entry that it may still try
-    bool is_postponed = false;   ///< the search for an entry that an item needs has not ended
-    Word available = 0;          ///< it takes items before this one
-    Word batch = 0;              ///< items taken for this revision, one by one
-    Word batch_limit = 0;        ///< maximum of `batch`
+    Time started{};                   ///< host time when it began, if it is timed
+    std::optional<Time> held_from{};  ///< the earliest time at which a held law allows a change
+    bool begins_held = false;         ///< a run begins at rest there in this revision
+    bool has_starved = false;         ///< the stream has begun to starve
+    int tries = 0;                    ///< candidates of an entry that it may still try
+    bool is_postponed = false;  ///< the next item is taken in the next step, which is due at once
+    Word available = 0;         ///< it takes items before this one
+    Word batch = 0;             ///< items taken for this revision, one by one
+    Word batch_limit = 0;       ///< maximum of `batch`
     std::optional<Word> entry_before{};  ///< the revision has no items: see enters_before()
   };
 

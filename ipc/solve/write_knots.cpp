@@ -230,7 +230,7 @@ void KnotWriter::write_off_target(const core::Plan& plan, bool writes_origin) no
 void KnotWriter::write_on_target(const core::Plan& plan) noexcept {
   const std::size_t knots = plan.window().knots();
   if (is_entry_new_) write_unmet(plan, plan.met());
-  write_knots(plan, std::max(open_, plan.met()), knots);
+  write_knots(plan, std::max(first_open_, plan.met()), knots);
   newest_ = number_of(plan, knots - 1);
   if (!plan.window().finished()) return;
   stop_ = Time::zero();

@@ -23,8 +23,8 @@ std::size_t most_streams(std::size_t descriptors_each) {
 
 }  // namespace
 
-StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, Tell tell,
-                         Time pause)
+StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions options,
+                         TellNews tell, Time pause)
     : options_(std::move(options)),
       tell_(std::move(tell)),
       most_owned_(most_streams(kDescriptorsPerStream)),

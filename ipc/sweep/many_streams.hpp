@@ -5,37 +5,19 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "ipc/layout/summary.hpp"
 #include "ipc/memory/poll_schedule.hpp"
 #include "ipc/memory/region_watch.hpp"
 #include "ipc/roles/solver_watch.hpp"
+#include "ipc/sweep/news.hpp"
 #include "splinecast/solver.hpp"
 
 namespace splinecast::ipc {
-
-/// What a sweep reports of a stream.
-enum class SweepNews : std::uint8_t {
-  waiting,         ///< there is no producer yet, or the stream has been removed
-  solving,         ///< it is solved here now
-  finished,        ///< the solver has taken its finish
-  elsewhere,       ///< another process solves it; taken over when that dies
-  no_descriptors,  ///< RLIMIT_NOFILE does not allow another one; retried when streams come or go
-  refused,         ///< an item was refused, the first one for its reason
-  beyond_limits,   ///< the curve exceeds a limit with a waypoint that was taken, the first one
-  following,       ///< with Beyond::enter: it meets no waypoint, cannot follow, or follows again
-  commander,       ///< of a time law: a commander is not heard, or holds it unasked; of another
-                   ///< stream: a stopper holds it, or is not heard
-  postponed,       ///< memory or descriptors are lacking; retried periodically
-  given_up,        ///< it cannot be solved; retried when its files have been replaced
-  gone,            ///< a stream that was found by a pattern no longer exists
-};
 
 /// The solvers of many streams in one thread. The streams are named, or found by patterns as they
 /// come and go.
@@ -49,17 +31,11 @@ enum class SweepNews : std::uint8_t {
 /// the others must not wait long. Allocates only when streams come and go.
 class StreamSweep {
  public:
-  /// Called when the state of a stream has changed, and for its first refusals, excess and finish.
-  /// `solver` is not null if the stream is solved here; `why` is set for `postponed`, `given_up`,
-  /// `refused`, `beyond_limits` and `commander`. Exceptions that it throws are ignored.
-  using Tell = std::function<void(SweepNews news, const std::string& stream, const Solver* solver,
-                                  std::string_view why)>;
-
   /// Each of `wanted` is a stream's name or a pattern, see is_pattern(). From now on no other
   /// process can solve a named stream, even while it has no producer. Solves all streams with these
   /// options. Throws BadRequest for invalid options or names. The constructor may already call
   /// `tell`. `pause` is the time between two sweeps.
-  StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, Tell tell,
+  StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, TellNews tell,
               Time pause = std::chrono::milliseconds(1));
 
   /// Polls every stream once. Returns whether one of them still has work to do: sweep again at
@@ -108,9 +84,8 @@ class StreamSweep {
 
   struct Served {
     std::unique_ptr<Solver> solver;
-    bool was_finished = false;
-    Following following = Following::meets;  ///< the last one reported
-    std::exception_ptr failure{};            ///< of a step
+    ReportedNews news{};
+    std::exception_ptr failure{};  ///< of a step
   };
 
   /// What a sweep reads of a stream without work.
@@ -144,8 +119,6 @@ class StreamSweep {
   void collect_calling();
   void prefetch_behind(std::size_t i) const noexcept;
   [[nodiscard]] bool serve(std::size_t index, const Clock& clock);
-  void tell_first_refusals(Solver& solver) noexcept;
-  void tell_following(Served& served) noexcept;
   void release_detached();
 
   // States and reports.
@@ -156,7 +129,7 @@ class StreamSweep {
   [[nodiscard]] std::size_t owned() const noexcept;
 
   SolverOptions options_;
-  Tell tell_;
+  TellNews tell_;
   std::vector<std::string> patterns_;
   RegionWatch regions_;
   std::optional<Word> seen_{};  ///< version of regions_ when the names were listed last
@@ -174,9 +147,8 @@ class StreamSweep {
   std::vector<Watch> watches_;          ///< all that a sweep reads of an idle stream
   std::vector<Served> served_;          ///< the same streams, with the same indices
   std::vector<std::size_t> calling_;    ///< indices of the streams that this sweep steps
-  std::vector<ItemRefusal> refused_;    ///< scratch
-  std::vector<std::string> faults_;     ///< scratch
-  Time now_{};                          ///< time of this sweep
+  ReportedNews::Scratch scratch_;
+  Time now_{};  ///< time of this sweep
   PollSchedule schedule_;
   Word stoppers_ = 0;  ///< version of the stoppers when all streams were polled last
   bool has_detached_ = false;

@@ -86,39 +86,8 @@ bool StreamSweep::serve(std::size_t index, const Clock& clock) {
     return false;
   }
   watches_[index] = {.solver = Internals::watch(*served.solver), .active = now_};
-  tell_first_refusals(*served.solver);
-  tell_following(served);
-  if (!served.was_finished && Internals::summary(*served.solver).finished) {
-    served.was_finished = true;
-    tell(SweepNews::finished, served.solver->stream(), served.solver.get(), {});
-  }
+  served.news.report(*served.solver, tell_, scratch_);
   return result.missed || watches_[index].solver.has_items();
-}
-
-void StreamSweep::tell_following(Served& served) noexcept {
-  const Following now = Internals::summary(*served.solver).following();
-  if (now == served.following) return;
-  served.following = now;
-  tell(SweepNews::following, served.solver->stream(), served.solver.get(), {});
-}
-
-void StreamSweep::tell_first_refusals(Solver& solver) noexcept {
-  try {
-    solver.take_first_refusals(refused_);
-    for (const ItemRefusal& refusal : refused_) {
-      tell_(SweepNews::refused, solver.stream(), &solver, to_string(refusal));
-    }
-    if (const auto excess = solver.take_first_excess()) {
-      tell_(SweepNews::beyond_limits, solver.stream(), &solver, solver.in_words(*excess));
-    }
-    faults_.clear();
-    solver.take_commander_faults(faults_);
-    for (const std::string& fault : faults_) {
-      tell_(SweepNews::commander, solver.stream(), &solver, fault);
-    }
-  } catch (...) {
-    return;  // an exception of the callback is ignored
-  }
 }
 
 void StreamSweep::release_detached() {

@@ -42,7 +42,8 @@ void BeginState::find(std::size_t i, Time natural_right) noexcept {
 
 /// Whether the acceleration with which a segment begins is a decision of the solver.
 bool BeginState::is_decided(const SegmentCopy& segment) const noexcept {
-  return segment.kind == SegmentKind::entry && record_.rules != kFormerRules;
+  return segment.kind == SegmentKind::entry && segment.order == kMaxOrder &&
+         record_.rules != kFormerRules;
 }
 
 /// Replaces the acceleration by that of a recorded segment, if that is one that a solver may
@@ -91,13 +92,12 @@ void BeginState::take_state_of(const SegmentCopy& segment) noexcept {
                     state_.ref().position.begin());
 }
 
-bool BeginState::is_state_of(const SegmentCopy& segment) const {
-  State state(record_.items.dimensions());
-  core::evaluate(segment.order, segment.coefficients, 0, state.ref());
+bool BeginState::is_state_of(const SegmentCopy& segment) noexcept {
+  core::evaluate(segment.order, segment.coefficients, 0, recorded_.ref());
   const bool may_step = segment.kind == SegmentKind::stop || is_decided(segment);
-  return same_bits(state.position(), state_.position()) &&
-         same_bits(state.velocity(), state_.velocity()) &&
-         (may_step || same_bits(state.acceleration(), state_.acceleration()));
+  return same_bits(recorded_.position(), state_.position()) &&
+         same_bits(recorded_.velocity(), state_.velocity()) &&
+         (may_step || same_bits(recorded_.acceleration(), state_.acceleration()));
 }
 
 }  // namespace splinecast::ipc

@@ -18,7 +18,10 @@ class BeginState {
  public:
   /// The record outlives this.
   explicit BeginState(const StreamRecord& record)
-      : record_(record), segments_(record.segments), state_(record.items.dimensions()) {}
+      : record_(record),
+        segments_(record.segments),
+        state_(record.items.dimensions()),
+        recorded_(record.items.dimensions()) {}
 
   /// Finds the state at which segment i, an entry or a stop, begins. By the rules 2 (see kRules) a
   /// solver decides with which acceleration an entry begins, at most that of the motion: it is read
@@ -50,11 +53,12 @@ class BeginState {
   void take_state_of(const SegmentCopy& segment) noexcept;
   [[nodiscard]] bool is_decided(const SegmentCopy& segment) const noexcept;
   void take_acceleration_of(const SegmentCopy& segment) noexcept;
-  [[nodiscard]] bool is_state_of(const SegmentCopy& segment) const;
+  [[nodiscard]] bool is_state_of(const SegmentCopy& segment) noexcept;
 
   const StreamRecord& record_;
   std::span<const SegmentCopy> segments_;
   State state_;
+  State recorded_;  ///< scratch
 };
 
 }  // namespace splinecast::ipc

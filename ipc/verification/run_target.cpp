@@ -31,6 +31,7 @@ void RunTarget::list_waypoints(Word first) {
 /// Lists the waypoints of the plan of a law whose pieces begin with item `first`, from its waypoint
 /// `done` on. `from`: the state before that one.
 void RunTarget::list_plan(Word first, const core::LawState& from, std::size_t done) {
+  if (!is_time_in_range(from.time)) return;
   const SentItems& items = record_.items;
   const std::size_t pieces =
       std::min<std::size_t>(std::size_t{1} + items.count(first), core::RateCurve::kMostPieces);
@@ -66,7 +67,7 @@ void RunTarget::list_after(Word first, std::optional<Time> after) {
     if (after && time <= *after) continue;
     after.reset();
     if (!waypoints_.empty() && time <= waypoints_.back().time) return;
-    if (!window().takes(record_.items.waypoint(*next))) return;
+    if (!is_time_in_range(time) || !window().takes(record_.items.waypoint(*next))) return;
     waypoints_.push_back({.time = time, .item = *next});
   }
 }
@@ -113,7 +114,7 @@ std::optional<std::size_t> RunTarget::newest_of(std::size_t index) const noexcep
 bool RunTarget::append_until(std::size_t count) {
   while (window().knots() < count) {
     const std::size_t k = window().knots();
-    if (k < first_ || k - first_ >= waypoints_.size()) return false;
+    if (k < first_ || k - first_ >= waypoints_.size() || window().finished()) return false;
     for (; frozen_met_ < met_.size() && met_[frozen_met_].newest < k; ++frozen_met_) {
       plan_.freeze_knots(met_[frozen_met_].index + 1);
     }

@@ -21,7 +21,8 @@ namespace splinecast::ipc {
 
 /// Makes the plan of a recorded run again: appends the run's waypoints one after the other, freezes
 /// each knot when the segments of the record show that the solver froze it, and imposes the entries
-/// and ends that they show. Searches for nothing. Holds one run at a time. One thread uses it.
+/// and ends that they show. Searches for nothing; the plan's counts mean nothing. Holds one run at
+/// a time. One thread uses it.
 class RunTarget {
  public:
   /// The record and its replacements outlive this. Throws std::invalid_argument for window options
@@ -68,7 +69,7 @@ class RunTarget {
 
   /// Appends waypoints of the run until the window has `count` of them. Before each append, freezes
   /// the knots that this waypoint did not change in the recorded stream: see note_met(). Returns
-  /// false if the run has fewer than `count`.
+  /// false if the run has fewer than `count`, or has been finished with fewer.
   [[nodiscard]] bool append_until(std::size_t count);
 
   /// Makes an entry part of the plan, as its end was decided.

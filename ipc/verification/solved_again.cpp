@@ -33,7 +33,7 @@ bool StreamReplay::solve_on_target(std::size_t s) {
   const auto newest = target_.newest_of(is_stop ? *index : *index + 1);
   if (!append_until((newest ? *newest : *index) + 1)) return false;
   if (is_last_run()) target_.finish_last_run();
-  if (*index >= window.segments()) {
+  if (*index >= window.segments() || *index < window.oldest_segment()) {
     return differ(s, "kind: it belongs to no run", in_words(segment.kind), "none");
   }
   if (is_stop && *index + 1 == window.knots()) {
@@ -76,6 +76,9 @@ bool StreamReplay::solve_path(std::size_t s) {
     path_.add(target_.window().knot(i), core::part_of(piece_));
   }
   if (!append_until(knots)) return false;
+  if (target_.plan().newest_time() - segments_[s].left > kLatestTime / 2) {
+    return differ(s, "length of the path", in_words(target_.plan().newest_time()), "shorter");
+  }
   path_.add_last(target_.window().knot(knots - 1));
   return true;
 }
@@ -94,9 +97,12 @@ bool StreamReplay::solve_slowed(std::size_t s) {
                 first_in_words(path_.waypoint(piece)));
 }
 
-/// Solves and compares a hold within a run. It begins at the published end of the segment before.
+/// Solves and compares a hold within a run. It begins at the uncut end of the segment before.
 bool StreamReplay::solve_hold_behind(std::size_t s) {
   const SegmentCopy& segment = segments_[s];
+  if (s == 0 || segment.left != natural_right_) {
+    return differ(s, "left end", in_words(segment.left), in_words(natural_right_));
+  }
   begin_.take_cut(s - 1, segment.left);
   core::build_hold(segment.left, segment.right, begin_.position(), solved_);
   return compare_solved(s);
@@ -122,6 +128,9 @@ bool StreamReplay::solve_state_stop(std::size_t s) {
 /// Solves and compares a stop from a state: by the former rules, or as it was decided.
 bool StreamReplay::solve_stop(std::size_t s, const Instant& from, StopPart part) {
   const SegmentCopy& segment = segments_[s];
+  if (segment.left != from.time) {
+    return differ(s, "left end", in_words(segment.left), in_words(from.time));
+  }
   const core::StopRules rules = target_.window().stop_rules();
   if (has_former_rules()) {
     const bool is_whole = part != StopPart::remainder;
@@ -163,7 +172,7 @@ Time StreamReplay::stop_length_after(std::size_t s) const noexcept {
   const bool is_shorter = is_there && i == s + 1;
   if (is_there && segments_[i].natural_right > from.time &&
       !(is_shorter && recorded_length(segments_[i]) <= 2 * core::kLeastStopTime)) {
-    return segments_[i].natural_right - from.time;
+    return saturated_sum(segments_[i].natural_right, -from.time);
   }
   return core::stop_time_within(rules, from);
 }
@@ -176,9 +185,16 @@ bool StreamReplay::solve_entry(std::size_t s) {
     const auto index = target_.index_of(segment.natural_right);
     if (!index) return differ(s, "right end", in_words(segment.natural_right), "no waypoint");
     if (!append_until(*index + segment.newer_knots + 1)) return false;
+    if (*index < target_.window().oldest_segment()) {
+      return differ(s, "waypoints known", std::to_string(segment.newer_knots), "fewer");
+    }
     end = core::end_at_knot(target_.window(), *index, end_);
   } else {
     if (!append_until(segment.origin.known)) return false;
+    const Time newest = target_.plan().newest_time();
+    const bool is_ahead = segment.natural_right >= newest &&
+                          saturated_sum(segment.natural_right, -newest) <= kLatestTime;
+    if (!is_ahead) return differ(s, "right end", in_words(segment.natural_right), in_words(newest));
     extrapolation_.begin_line(target_.window());
     extrapolation_.stop_after(stop_length_after(s));
     end = core::end_ahead(target_.window(), extrapolation_, segment.natural_right, end_);

@@ -199,8 +199,13 @@ bool StreamReplay::rests_at_last_waypoint() {
 
 /// Requires that each waypoint before item `end` is on the curve or was replaced.
 bool StreamReplay::expect_all_used(Word end) {
-  const auto missed = record_.items.find(ItemKind::waypoint, target_.used(), end);
-  if (!missed || decisions_.replacements().find(*missed, end)) return true;
+  auto missed = record_.items.find(ItemKind::waypoint, target_.used(), end);
+  while (missed) {
+    const auto replaced = decisions_.replacements().find(*missed, end);
+    if (!replaced) break;
+    missed = record_.items.find(ItemKind::waypoint, *replaced, end);
+  }
+  if (!missed) return true;
   const std::size_t last = segments_.empty() ? 0 : std::min(next_, segments_.size() - 1);
   return differ(last, std::string("waypoint of item ") + std::to_string(*missed), "none",
                 in_words(record_.items.waypoint(*missed).time));

@@ -17,7 +17,11 @@ struct Verification {
 /// newer knots were known when each knot was last solved, where each run was entered, what was
 /// frozen at the finish) and compares every segment bit by bit: ends, order, kind, coefficients,
 /// the waypoint at its left end. Terminates for any content of the record. Items of an unfinished
-/// stream after the last segment need not be on the curve. O(segments·K·D).
+/// stream after the last segment need not be on the curve. O(segments·K·D), and for each run
+/// O(items); up to 1001 times that if late cuts have to be found out.
+///
+/// What it does not compare: why an entry or an end was chosen, and whether entries keep the
+/// limits.
 ///
 /// A run that begins exactly at a knot overwrites the segment that began there, so that segment
 /// cannot be solved again. The state at which such a run begins is taken from its entry.

@@ -53,7 +53,6 @@ void RecordedStream::take_options(std::span<const std::byte> body) {
     items_.clear();
     items_end_ = complete_from_ = 0;
     summary_ = {};
-    end_ = {};
     next_segment_ = 1;
   }
   options_ = std::move(options);
@@ -67,7 +66,6 @@ void RecordedStream::take_item(NumberedItem item) {
     complete_from_ = item.number;
   }
   items_end_ = item.number + 1;
-  if (item.item.kind == ipc::ItemKind::finish) end_ = condition_of(item.item);
   items_.emplace_hint(items_.end(), item.number, Item{std::move(item.item)});
 }
 
@@ -132,6 +130,15 @@ ipc::SentItems RecordedStream::sent_items() const {
   return sent;
 }
 
+/// The end condition of the finish that the solver took.
+Condition RecordedStream::end() const {
+  const auto is_taken = [](const auto& entry) {
+    return entry.second.item.kind == ipc::ItemKind::finish && !entry.second.is_refused;
+  };
+  const auto finish = std::ranges::find_if(items_, is_taken);
+  return finish != items_.end() ? condition_of(finish->second.item) : Condition{};
+}
+
 void RecordedStream::verify_part() {
   ++found_.parts;
   const Part& part = *part_;
@@ -146,7 +153,7 @@ void RecordedStream::verify_part() {
          .items = items,
          .segments = part.segments,
          .summary = summary,
-         .end = end_,
+         .end = end(),
          .is_part = part.restart.has_value(),
          .restart = part.restart && part.restart->knots ? &*part.restart->knots : nullptr,
          .rules = options_->spline->rules});

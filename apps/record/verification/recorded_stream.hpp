@@ -65,13 +65,13 @@ class RecordedStream {
   void verify_part();
   [[nodiscard]] bool has_items_from(ipc::Word first) const noexcept;
   [[nodiscard]] ipc::SentItems sent_items() const;
+  [[nodiscard]] Condition end() const;
 
   std::optional<StreamOptions> options_;
   std::map<ipc::Word, Item> items_;  ///< by number
   ipc::Word items_end_ = 0;          ///< the number after the newest item
   ipc::Word complete_from_ = 0;      ///< all items from this one on are here
   ipc::Summary summary_;             ///< the last one of this stream
-  Condition end_;                    ///< of the finish
   std::optional<Part> part_;
   ipc::Word next_segment_ = 1;  ///< number of the segment that should follow
   StreamVerification found_;

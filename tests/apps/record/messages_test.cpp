@@ -163,6 +163,20 @@ TEST(RecordMessages, OptionsOfNoStreamAreRefusedByName) {
   EXPECT_NE(refusal("/stream", "../x"), "accepted");
 }
 
+TEST(RecordMessages, ASegmentWhoseLengthIsNoTimeIsRefused) {
+  const auto read_back = [](const ipc::SegmentCopy& segment) {
+    const Bytes message = encode(segment);
+    (void)decode_segment(std::span(message).subspan(1), kDimensions);
+  };
+  ipc::SegmentCopy segment = a_segment();
+  segment.left = -kLatestTime;
+  segment.right = segment.natural_right = kLatestTime;
+  EXPECT_NO_THROW(read_back(segment));
+  segment.left = -2 * kLatestTime;
+  segment.right = segment.natural_right = 2 * kLatestTime;
+  EXPECT_THROW(read_back(segment), BadMessage);
+}
+
 /// Random changes of a stream's messages: an exception or a result, and no crash.
 TEST(RecordMessages, AnyBytesAreRefusedOrVerified) {
   std::mt19937_64 random(5);

@@ -54,6 +54,19 @@ TEST(EntrySearch, PassesOverKnotsThatAreCloserThanTheShortestEntry) {
   }
 }
 
+/// The target is a line up to a bound that only the stop after it passes.
+TEST(EntrySearch, AnEntryToAKnotCountsTheStopAfterTheNewestOneIfTheRulesDo) {
+  const MotionLimits limits{.acceleration = {5}, .upper = {1}};
+  const auto line = [](double s, std::size_t) { return 0.5 + s; };
+  SlidingWindow target = target_of(1, line, 20, limits);
+  ASSERT_LT(target.knot(19).waypoint[0], 1);
+  const From from{milliseconds(0), {0.4}, {0.9}, {0}};
+  EntrySearch search(1, {});
+  EXPECT_TRUE(look_for(search, target, from, {.limits = &limits}).end.knot);
+  const Found found = look_for(search, target, from, {.limits = &limits, .checks_stop = true});
+  EXPECT_EQ(found.outcome, Outcome::none);
+}
+
 TEST(EntrySearch, EndsAlsoWithAShortestEntryOfOneNanosecond) {
   const MotionLimits limits{.velocity = {1e-3}, .acceleration = {1e-3}};
   SlidingWindow target = target_of(1, sine, 5, limits);

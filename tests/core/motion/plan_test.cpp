@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <optional>
+#include <vector>
+
 #include "tests/fixtures/curves/plan_walk.hpp"
 
 namespace splinecast::testing {
@@ -17,6 +21,29 @@ TEST(Plan, KeepsItsInvariantsInRandomOperations) {
   EXPECT_TRUE(facts.unexpected().empty()) << facts.unexpected().front();
   EXPECT_GT(facts.entries_checked, 0U);
   EXPECT_GT(facts.stops_checked, 0U);
+}
+
+/// A newer entry that begins where such an entry has ended passes over what is later only.
+TEST(Plan, AnEntryThatEndsAtTheNewestWaypointMeetsItAlsoIfAnotherEntryFollows) {
+  using std::chrono::milliseconds;
+  const std::vector<double> zero{0};
+  core::Plan plan(1, {});
+  plan.begin({milliseconds(0), zero, zero, zero});
+  for (const int ms : {100, 200, 300}) {
+    (void)plan.append({.time = milliseconds(ms), .position = zero});
+  }
+  plan.enter({.known = 3,
+              .state = {milliseconds(300), zero, zero, zero},
+              .line_end = milliseconds(550),
+              .rest = milliseconds(800)},
+             std::nullopt);
+  EXPECT_EQ(plan.passed_over(), 2U);
+  (void)plan.append({.time = milliseconds(1000), .position = zero});
+  (void)plan.append({.time = milliseconds(1100), .position = zero});
+  plan.enter({.knot = 4, .known = 5, .state = {milliseconds(1100), zero, zero, zero}},
+             Instant{milliseconds(900), zero, zero, zero});
+  EXPECT_EQ(plan.passed_over(), 3U);  // 0, 1 and 3
+  EXPECT_EQ(plan.unmet(), 3U);
 }
 
 }  // namespace

@@ -144,17 +144,18 @@ TEST(Trial, ComparesAStopWithAccelerationJerkAndBounds) {
     build_stop(milliseconds(1), length, zeros, velocity, zeros, stop);
     return stop;
   };
-  EXPECT_FALSE(trial.excess_of_stop(stop_from({0.1, 0.1}, milliseconds(500)), false));
-  const auto harsh = trial.excess_of_stop(stop_from({1, 0}, milliseconds(50)), false);
+  EXPECT_FALSE(trial.excess_of_stop(stop_from({0.1, 0.1}, milliseconds(500))));
+  const auto harsh = trial.excess_of_stop(stop_from({1, 0}, milliseconds(50)));
   ASSERT_TRUE(harsh);
   EXPECT_EQ(harsh->excess.kind, LimitKind::acceleration);
   EXPECT_EQ(harsh->excess.dimension, 0U);
-  const auto far = trial.excess_of_stop(stop_from({0, 4}, milliseconds(900)), false);
+  const auto far = trial.excess_of_stop(stop_from({0, 4}, milliseconds(900)));
   ASSERT_TRUE(far);
   EXPECT_EQ(far->excess.kind, LimitKind::position);
   EXPECT_EQ(far->excess.dimension, 1U);
   EXPECT_EQ(far->time, milliseconds(901));
-  EXPECT_FALSE(trial.excess_of_stop(stop, true));  // dimension 1 has no limit of acceleration
+  std::vector<double> scratch(2);  // dimension 1 has no limit of acceleration
+  EXPECT_FALSE(excess_of_stop(trial.window(), stop, StopBounds::limited, scratch));
 }
 
 }  // namespace

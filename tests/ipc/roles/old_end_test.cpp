@@ -61,6 +61,7 @@ class OldEnd : public ::testing::Test {
   Producer attached_producer(Solver& solver, const ProducerOptions& options = {}) {
     Producer made = producer(options);
     solve_until(solver, [&] { return made.wait_for_solver(Time(0)); });
+    attached_ = now();
     return made;
   }
 
@@ -78,13 +79,14 @@ class OldEnd : public ::testing::Test {
     solve_until(solver, [&] { return now() > t + 60ms; });
   }
 
-  /// Samples the stream every step until `end`, and compares it with the bound of its velocity.
+  /// Samples the stream every step until `end`, and compares it with the bound of its velocity. It
+  /// was at `first` when the last producer attached, and may have begun to move since then.
   /// Returns the last position.
   double follow(Solver& solver, Time end, double first, double fastest) {
     Reader reader(stream_.name());
     State state(1);
     double last = first;
-    Time before = now();
+    Time before = attached_;
     solve_until(solver, [&] {
       const Time t = now();
       if (!has_values(reader.sample(t, state))) return t > end;
@@ -99,6 +101,7 @@ class OldEnd : public ::testing::Test {
 
   testing::TestStream stream_;
   Values position_;
+  Time attached_{};
 };
 
 TEST_F(OldEnd, AFirstWaypointElsewhereIsRefusedWithBothPositions) {

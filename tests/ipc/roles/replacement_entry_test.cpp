@@ -52,7 +52,7 @@ struct Replaced : LiveStream {
     }
   }
   ReplacePreview preview(Time blend) {
-    ReplacementPlanner planner(board.reader, window, kinds, live);
+    ReplacementPlanner planner(board.reader, window, kinds, live, Beyond::report);
     ReplacePreview out;
     out.begin = time_at(1100);
     planner.plan(plan, blend, out);
@@ -226,7 +226,7 @@ TEST(ReplacementPreview, OfAProducerChangesNothingAndMatchesTheReplacement) {
 
 TEST(ReplacementPreview, IsUnknownForAStreamWithoutACurve) {
   LiveStream live;
-  ReplacementPlanner planner(live.board.reader, live.window, live.kinds, live.live);
+  ReplacementPlanner planner(live.board.reader, live.window, live.kinds, live.live, Beyond::report);
   ReplacePreview told;
   told.begin = time_at(100);
   planner.plan({}, {}, told);

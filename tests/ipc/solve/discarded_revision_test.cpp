@@ -240,7 +240,7 @@ class Curve {
     if (entry) curve_->begin_run(*entry, {});
     for (std::size_t i = from; i < to; ++i) curve_->append(trial.waypoints()[i], i);
     int tries = kTries;
-    curve_->plan(Time::min(), Time::max(), true, tries);
+    curve_->advance_search(Time::min(), Time::max(), true, tries);
   }
   [[nodiscard]] bool tries_to_finish() {
     int tries = kTries;

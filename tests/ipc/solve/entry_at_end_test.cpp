@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <random>
 
 #include "tests/ipc/solve/watched_stream.hpp"
 
@@ -48,6 +49,40 @@ TEST(Entry, ToTheLastWaypointIsAsLongAsTheLimitRequires) {
   EXPECT_NEAR(live.position_at(end), 30, 1e-9);
   EXPECT_LE(live.peak(2), 1 + 1e-6);
   EXPECT_EQ(live.verified(), "");
+}
+
+/// Whether a start state in motion, a waypoint and the finish are taken in one step or in several
+/// decides nothing about the end.
+TEST(Entry, ToTheLastWaypointDoesNotDependOnTheStepThatTakesTheStart) {
+  constexpr int kTrials = 400;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(-1, 1);
+  int entered = 0;
+  for (int i = 0; i < kTrials; ++i) {
+    core::WindowOptions how = limited(5);
+    how.limits.velocity = {0.5};
+    how.limits.jerk = {40};
+    const double x = number(random);
+    const double v = 3 * number(random);
+    const double a = 5 * number(random);
+    const double goal = 2 * number(random);
+    const int ms = 80 + static_cast<int>(200 * std::abs(number(random)));
+    const auto play = [&](bool at_once) {
+      Watched live(how);
+      EXPECT_EQ(live.ring.writer.start_from({at(60), {&x, 1}, {&v, 1}, {&a, 1}}, live.solved()),
+                AppendStatus::accepted);
+      if (!at_once) live.step();
+      live.send(ms, goal);
+      live.end();
+      EXPECT_EQ(live.verified(), "");
+      return live.ending();
+    };
+    const EndKind end = play(false);
+    EXPECT_EQ(play(true), end) << i;
+    entered += end == EndKind::in_stop ? 0 : 1;
+  }
+  EXPECT_GT(entered, kTrials / 4);
+  EXPECT_LT(entered, kTrials);
 }
 
 }  // namespace

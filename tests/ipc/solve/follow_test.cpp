@@ -154,6 +154,54 @@ TEST(Follow, SaysThatItCannotFollowAndRestsUntilItMeetsAWaypointAgain) {
   }
 }
 
+/// Lines up to a bound at many speeds, after a step that makes the curve leave its waypoints: also
+/// the stop after the last waypoint keeps the bound, after each number of waypoints.
+TEST(Follow, TheStopAfterAnEntryKeepsABound) {
+  for (int k = 0; k < 60; ++k) {
+    core::WindowOptions how = limits(4, 10);
+    how.limits.upper = {1};
+    Following live(how, Beyond::enter);
+    const double speed = 0.4 + 0.05 * k;  // per second
+    double most = 0;
+    int ms = 50;
+    for (int i = 0; i < 300; ++i, ms += 10) {
+      live.run_to(ms - 120);
+      const double way = speed * 0.01 * std::max(0, i - 20);
+      live.send_or_drop(ms, std::min(way + (i > 24 ? 0.02 : 0), 0.97));
+      live.step();
+      most = std::max(most, live.position_at(at(60'000)));
+    }
+    EXPECT_LE(most, 1 + 1e-9) << speed;
+    live.end();
+    EXPECT_EQ(live.verified(), "");
+  }
+}
+
+/// With `hermite` an entry from rest may end at the waypoint itself, and the curve follows then.
+TEST(Follow, SaysThatItFollowsAfterAnEntryToTheNewestWaypoint) {
+  core::WindowOptions how = limits(1, 10);
+  how.interpolant.method = find_method("hermite");
+  Following live(how, Beyond::enter);
+  const auto send = [&](int ms, double position, double velocity) {
+    const Waypoint waypoint{.time = at(ms), .position = {&position, 1}, .velocity = {&velocity, 1}};
+    return live.ring.writer.append(waypoint, {.consumed = live.board.reader.consumed()});
+  };
+  int ms = 50;
+  for (int i = 0; live.now() != ipc::Following::cannot_follow && i < 1500; ++i, ms += 10) {
+    live.run_to(ms - 200);
+    (void)send(ms, 0.02 * i, 2);
+  }
+  ASSERT_EQ(live.now(), ipc::Following::cannot_follow);
+  const double there = live.position_at(at(100'000));
+  ms += 2000;  // then the curve rests, and has time to reach the next waypoint
+  for (int i = 0; i < 600; ++i, ms += 10) {
+    live.run_to(ms - 200);
+    (void)send(ms, there + 0.01, 0);
+  }
+  EXPECT_EQ(live.now(), ipc::Following::meets);
+  EXPECT_EQ(live.verified(), "");
+}
+
 TEST(Follow, IsAsReportWithoutLimits) {
   Following live({}, Beyond::enter);
   live.play(fast_line());

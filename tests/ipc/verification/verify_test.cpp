@@ -4,7 +4,9 @@
 
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ipc/verification/settled_segments.hpp"
@@ -140,6 +142,57 @@ TEST(Verification, ReportsAWaypointThatIsNotOnTheCurve) {
   SentItems fewer = played.items();
   fewer.refuse(100);
   EXPECT_TRUE(played.verify(fewer).first);
+}
+
+/// The hold would stop a moving machine at once.
+TEST(Verification, FindsAHoldThatCutsAMotion) {
+  Played stopped(core::WindowOptions{});
+  stopped.segments.resize(41);
+  SegmentCopy& cut = stopped.segments.back();
+  cut.right = cut.left + (cut.right - cut.left) / 2;
+  State state(2);
+  core::evaluate(cut.order, cut.coefficients, to_seconds(cut.right - cut.left), state.ref());
+  core::Segment held(2);
+  core::build_hold(cut.right, cut.right, state.position(), held);
+  SegmentCopy hold{.number = cut.next, .next = cut.next + 1};
+  hold.left = hold.right = hold.natural_right = cut.right;
+  hold.order = held.order;
+  hold.kind = held.kind;
+  hold.coefficients.assign(held.coefficients.begin(), held.coefficients.begin() + 2L * held.order);
+  stopped.segments.push_back(hold);
+  stopped.summary = {};
+  const Verification found = stopped.verify();
+  ASSERT_TRUE(found.first);
+  EXPECT_EQ(found.first->what, "left end");
+}
+
+/// A record of another party may begin in any way.
+TEST(Verification, ReportsAFirstSegmentThatIsAHoldOrAShortEntry) {
+  for (const auto& [kind, order] : {std::pair{SegmentKind::hold, 1}, {SegmentKind::entry, 1}}) {
+    Played strange(core::WindowOptions{});
+    SegmentCopy& first = strange.segments.front();
+    first.kind = kind;
+    first.order = order;
+    first.has_waypoint = false;
+    first.waypoint.clear();
+    first.coefficients.resize(2);
+    first.origin.item = kind == SegmentKind::entry ? std::optional<Word>(0) : std::nullopt;
+    first.origin.ends_at_waypoint = true;
+    EXPECT_TRUE(strange.verify().first) << static_cast<int>(kind);
+  }
+}
+
+TEST(Verification, ReportsAMissedWaypointAfterAReplacementOfOlderOnes) {
+  const Played played(core::WindowOptions{});
+  SentItems more = played.items();
+  const Waypoint last = played.items().waypoint(more.size() - 1);
+  more.add(ItemKind::waypoint, last);  // withdrawn by what follows
+  more.add(ItemKind::replace, {.time = last.time});
+  EXPECT_FALSE(played.verify(more).first);
+  more.add(ItemKind::waypoint, last);
+  const Verification found = played.verify(more);
+  ASSERT_TRUE(found.first);
+  EXPECT_EQ(found.first->what, "waypoint of item 152");
 }
 
 /// Kills, starvation and replacements, with local methods, with smoothing, with and without limits.
