@@ -50,8 +50,8 @@ struct EndSearch {
 class PublishedCurve {
  public:
   /// Maximum number of candidates that the searches of one step build and compare with the limits.
-  /// Besides, a step may try each knot of the window before a cut or an end, and the fallback and
-  /// the longest entries of a search.
+  /// In addition, a step may try each knot of the window before a cut or an end, and the fallback
+  /// and the longest entries of a search.
   static constexpr int kTriesPerStep = 4;
   /// Knots that a stop may add.
   static constexpr std::size_t kAddedByStop = 2;

@@ -95,6 +95,10 @@ bool RecordedDecisions::begins_elsewhere(std::size_t i) const noexcept {
   if (segments_[i].has_waypoint) return false;
   const Word items = record_.items.size();
   if (record_.items.find(ItemKind::start_state, 0, items)) return true;
+  // Or where an earlier stream has left the machine, if a stopper's hold refused what came first. A
+  // stream that starts by an entry from its first waypoint begins at the time of that.
+  const auto taken = record_.items.find(ItemKind::waypoint, 0, items);
+  if (taken && record_.items.waypoint(*taken).time > segments_[i].left) return true;
   const auto has_item = [](const SegmentCopy& s) { return s.origin.item.has_value(); };
   const auto entry = std::ranges::find_if(segments_, has_item);
   const Word first = entry != segments_.end() ? *entry->origin.item : items;

@@ -163,7 +163,7 @@ TEST(RecordMessages, OptionsOfNoStreamAreRefusedByName) {
   EXPECT_NE(refusal("/stream", "../x"), "accepted");
 }
 
-TEST(RecordMessages, ASegmentWhoseLengthIsNoTimeIsRefused) {
+TEST(RecordMessages, ASegmentThatIsTooLongForATimeIsRefused) {
   const auto read_back = [](const ipc::SegmentCopy& segment) {
     const Bytes message = encode(segment);
     (void)decode_segment(std::span(message).subspan(1), kDimensions);

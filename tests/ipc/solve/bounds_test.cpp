@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/ipc/solve/watched_stream.hpp"
+#include "tests/fixtures/streams/watched_stream.hpp"
 
 /// Entries and ends at a bound of the position.
 namespace splinecast::ipc::entries {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "tests/ipc/solve/watched_stream.hpp"
+#include "tests/fixtures/streams/watched_stream.hpp"
 
 /// Ends of live streams with limits.
 namespace splinecast::ipc::entries {

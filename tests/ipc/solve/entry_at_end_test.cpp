@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "tests/ipc/solve/watched_stream.hpp"
+#include "tests/fixtures/streams/watched_stream.hpp"
 
 /// Entries to the last waypoint of a stream that finishes after that waypoint has settled.
 namespace splinecast::ipc::entries {

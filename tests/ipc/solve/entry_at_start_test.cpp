@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/ipc/solve/watched_stream.hpp"
+#include "tests/fixtures/streams/watched_stream.hpp"
 
 /// Streams that begin with an entry, and streams that do not.
 namespace splinecast::ipc::entries {

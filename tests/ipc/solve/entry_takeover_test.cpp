@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "tests/ipc/solve/watched_stream.hpp"
+#include "tests/fixtures/streams/watched_stream.hpp"
 
 /// A solver that takes over makes the same entries as its predecessor would have made.
 namespace splinecast::ipc::entries {

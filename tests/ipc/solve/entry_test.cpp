@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/motion/extrapolation.hpp"
-#include "tests/ipc/solve/watched_stream.hpp"
+#include "tests/fixtures/streams/watched_stream.hpp"
 
 /// How a curve returns to its waypoints, and which waypoints it passes over.
 namespace splinecast::ipc::entries {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/ipc/solve/watched_stream.hpp"
+#include "tests/fixtures/streams/watched_stream.hpp"
 
 /// A stream that keeps its limits by leaving the spline: Beyond::enter.
 namespace splinecast::ipc::entries {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <random>
 
-#include "tests/ipc/solve/watched_stream.hpp"
+#include "tests/fixtures/streams/watched_stream.hpp"
 
 /// How a curve uses waypoints that are late, or refused during the search for an entry.
 namespace splinecast::ipc::entries {

@@ -10,7 +10,7 @@
 
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/owned/outcome.hpp"
-#include "tests/ipc/solve/watched_stream.hpp"
+#include "tests/fixtures/streams/watched_stream.hpp"
 
 /// What became of each item of a live stream.
 namespace splinecast::ipc::entries {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/forms/stop.hpp"
-#include "tests/ipc/solve/watched_stream.hpp"
+#include "tests/fixtures/streams/watched_stream.hpp"
 
 /// How long stops take, and with which acceleration they and entries begin.
 namespace splinecast::ipc::entries {
