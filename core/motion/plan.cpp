@@ -268,6 +268,7 @@ void Plan::end_on_target(const Condition& end) noexcept {
 }
 
 void Plan::end_at_newest() noexcept {
+  (void)meets_known(Time::max());
   mark_newest_met();
   ended_ = Ended{EndKind::as_requested};
 }
@@ -280,7 +281,10 @@ void Plan::mark_newest_met() noexcept {
 }
 
 void Plan::end_by_entry(Time rest, const std::optional<Instant>& from) noexcept {
-  if (from) set_origin(*from);
+  if (from) {
+    (void)meets_known(from->time);
+    set_origin(*from);
+  }
   ended_ = Ended{EndKind::entered, rest};
   const auto newest = window_.knot(window_.knots() - 1).position;
   std::ranges::copy(newest, entry_end_.ref().position.begin());

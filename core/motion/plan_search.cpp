@@ -23,7 +23,7 @@ PlanSearch::PlanSearch(std::size_t dimensions, const WindowOptions& window,
       search_(dimensions, window.kinds),
       trial_(dimensions, window),
       reach_(dimensions),
-      end_limits_(window.limits),
+      end_limits_(trial_.window().limits_at_largest_rate()),
       values_(dimensions) {
   end_limits_.acceleration.resize(dimensions);
 }

@@ -118,8 +118,8 @@ class PlanSearch {
   [[nodiscard]] bool keeps_limits_with(const Plan& plan, const Condition& end, Time settled,
                                        const MotionLimits& shown) noexcept;
 
-  /// The limits of an end, as of the last keeps_limits_with(): a dimension without a limit of
-  /// acceleration has the one that the motion has shown.
+  /// The limits of an end, as of the last keeps_limits_with(), at each rate of a law: a dimension
+  /// without a limit of acceleration has the one that the motion has shown.
   [[nodiscard]] const MotionLimits& end_limits() const noexcept { return end_limits_; }
 
   /// Writes the stop after the newest waypoint in which a plan can be ended: the shortest that

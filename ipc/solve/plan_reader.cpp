@@ -1,30 +1,15 @@
 #include "ipc/solve/plan_reader.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "core/forms/instant.hpp"
 #include "ipc/layout/knot_slots.hpp"
+#include "ipc/runs/sound_knot.hpp"
 
 namespace splinecast::ipc {
 namespace {
 
 using core::SegmentForm;
-
-bool are_numbers(std::span<const double> values) noexcept {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
-}
-
-/// Whether a curve can continue from a knot that was read back.
-bool is_sound(const core::Knot& knot) noexcept {
-  const core::Prefix& prefix = knot.prefix;
-  return is_time_in_range(knot.time) &&
-         are_numbers(std::array{prefix.gamma, prefix.smoothing.pivot, prefix.smoothing.lower1,
-                                prefix.smoothing.lower2}) &&
-         are_numbers(knot.waypoint) && are_numbers(knot.g) && are_numbers(knot.position) &&
-         are_numbers(knot.velocity) && are_numbers(knot.acceleration) && are_numbers(knot.residual);
-}
 
 /// Whether a summary of an unfinished stream describes a possible run.
 bool describes_a_run(const Summary& summary) noexcept {

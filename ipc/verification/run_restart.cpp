@@ -1,23 +1,17 @@
 #include "ipc/verification/run_restart.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <span>
 #include <utility>
 
 #include "core/slopes/rule.hpp"
-#include "splinecast/waypoint.hpp"
+#include "ipc/runs/sound_knot.hpp"
 
 namespace splinecast::ipc {
 namespace {
 
 std::vector<double> to_vector(std::span<const double> values) {
   return {values.begin(), values.end()};
-}
-
-bool are_numbers(std::span<const double> values) noexcept {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
 /// The number of the first knot of the target's last piece: from there on, each knot on the board
@@ -52,15 +46,12 @@ std::optional<RestartKnot> copy(const KnotBoardReader& board, Word r, Word numbe
 }
 
 bool is_sound(const RestartKnot& knot, std::size_t dimensions, bool smooths) noexcept {
-  const core::Prefix& prefix = knot.prefix;
   const auto fits = [dimensions](std::span<const double> values, bool is_optional) {
-    return (values.size() == dimensions || (is_optional && values.empty())) && are_numbers(values);
+    return values.size() == dimensions || (is_optional && values.empty());
   };
-  return is_time_in_range(knot.time) && fits(knot.waypoint, false) && fits(knot.g, false) &&
-         fits(knot.position, false) && fits(knot.velocity, false) &&
-         fits(knot.acceleration, true) && fits(knot.residual, !smooths) &&
-         are_numbers(std::array{prefix.gamma, prefix.smoothing.pivot, prefix.smoothing.lower1,
-                                prefix.smoothing.lower2});
+  return fits(knot.waypoint, false) && fits(knot.g, false) && fits(knot.position, false) &&
+         fits(knot.velocity, false) && fits(knot.acceleration, true) &&
+         fits(knot.residual, !smooths) && ipc::is_sound(knot.view());
 }
 
 }  // namespace

@@ -46,5 +46,25 @@ TEST(Plan, AnEntryThatEndsAtTheNewestWaypointMeetsItAlsoIfAnotherEntryFollows) {
   EXPECT_EQ(plan.unmet(), 3U);
 }
 
+/// The pieces that end a curve are executed at the largest rate of a law, too.
+TEST(PlanSearch, ComparesAnEndWithTheLimitsAtTheLargestRate) {
+  using std::chrono::milliseconds;
+  core::WindowOptions how;
+  how.largest_rate = 2;
+  how.limits = {.velocity = {1}, .acceleration = {4}, .jerk = {40}};
+  core::Plan plan(1, how);
+  core::PlanSearch search(1, how, {.is_live = true});
+  for (int i = 0; i < 5; ++i) {
+    const double x = 0.001 * i;
+    (void)plan.append({.time = milliseconds(10 * i), .position = {&x, 1}});
+  }
+  const core::ShownLimits shown(1);
+  (void)search.keeps_limits_with(plan, {.kind = ConditionKind::halt, .value = {}}, milliseconds(0),
+                                 shown.limits());
+  EXPECT_EQ(search.end_limits().velocity, std::vector<double>{0.5});
+  EXPECT_EQ(search.end_limits().acceleration, std::vector<double>{1});
+  EXPECT_EQ(search.end_limits().jerk, std::vector<double>{5});
+}
+
 }  // namespace
 }  // namespace splinecast::testing
