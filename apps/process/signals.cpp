@@ -47,6 +47,12 @@ void end_at_once(int /*signal*/) {
   _exit(kInterrupted);
 }
 
+/// Whether no living parent waits for this process, so that it limits its own shutdown.
+bool is_on_its_own() {
+  const pid_t waiting = waiting_parent.load(std::memory_order_relaxed);
+  return waiting == 0 || getppid() != waiting;
+}
+
 /// Handler of the stop signals. Calls only async-signal-safe functions.
 void request_stop(int /*signal*/) {
   const int error = errno;
@@ -55,8 +61,7 @@ void request_stop(int /*signal*/) {
   for (const int signal : kStopSignals) {
     if (handler_of(signal) == request_stop) set_handler(signal, SIG_DFL);
   }
-  const pid_t waiting = waiting_parent.load(std::memory_order_relaxed);
-  if (waiting == 0 || getppid() != waiting) alarm(kGraceSeconds);
+  if (is_on_its_own()) alarm(kGraceSeconds);
   errno = error;
 }
 
@@ -86,8 +91,7 @@ void catch_stop_signals_as_child_of(pid_t parent) {
 }
 
 void extend_shutdown() noexcept {
-  const bool is_limited = alarm(kGraceSeconds) > 0;
-  if (!is_limited) alarm(0);
+  if (stop_requested() && is_on_its_own()) alarm(kGraceSeconds);
 }
 
 bool stop_requested() noexcept { return stop.load(std::memory_order_relaxed); }

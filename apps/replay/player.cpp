@@ -121,6 +121,8 @@ class Replay {
   [[nodiscard]] ProducerOptions producer_options() const {
     ProducerOptions made = options_.ring;
     made.dimensions = recording_.columns().dimensions();
+    made.names.clear();
+    made.units.clear();
     made.kinds = recording_.kinds();
     made.start = options_.start.value_or(unasked());
     for (const std::string& column : recording_.columns().names) {

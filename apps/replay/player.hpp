@@ -32,7 +32,8 @@ struct ReplayOptions {
   std::size_t loops = 1;
   std::optional<Time> from{};
   std::optional<Time> duration{};
-  /// Of the stream. What the recording determines is not read: dimensions, kinds, start.
+  /// Of the stream. The recording determines its dimensions, names, units and kinds, and `start`
+  /// its start: these members are not read.
   ProducerOptions ring{};
   std::optional<Time> lead{};  ///< unset: what the recording and the settle lag need
   std::optional<Condition> start{};

@@ -204,7 +204,8 @@ void Plan::wait_for_entry(std::size_t unmet) noexcept {
   restart_unmet_since();
 }
 
-/// Counts from now on for how long the curve meets no waypoint: from the first unmet one on.
+/// Sets unmet_since() to the time of the first unmet waypoint, if it is counted and there is one,
+/// and takes waypoints again.
 void Plan::restart_unmet_since() noexcept {
   refused_until_ = unmet_since_ = Time::max();
   if (!counts_unmet_ || unmet_ >= window_.knots()) return;

@@ -78,17 +78,16 @@ struct Reader::Impl {
     if (!ipc::region_exists(stream, ipc::RegionKind::spline)) return nullptr;
     try {
       constexpr bool kKeepsDescriptor = true;  // alive() reads the lock of the region
-      ipc::BoardView board(ipc::open_board(stream, false, trust), kKeepsDescriptor);
-      const ipc::RegionHeader& header = board.header;
+      auto impl = std::make_unique<Impl>(
+          stream, ipc::BoardView(ipc::open_board(stream, false, trust), kKeepsDescriptor));
+      const ipc::RegionHeader& header = impl->board.header;
       const bool is_current = is_of_current_stream(stream, header, trust);
       if (is_current) ipc::require_same_clock(header, stream);
-      auto impl = std::make_unique<Impl>(stream, std::move(board));
-      const ipc::RegionHeader& described = impl->board.header;
       // A motion that has not ended moves the machine, also if a newer stream waits for its end.
-      const bool may_move = is_current || ipc::end_of_motion(described, impl->board.reader, trust) >
+      const bool may_move = is_current || ipc::end_of_motion(header, impl->board.reader, trust) >
                                               MonotonicClock().now();
       if (!may_move) return nullptr;
-      if (described.law_id != 0) impl->law = std::make_unique<ipc::LawFollower>(described, trust);
+      if (header.law_id != 0) impl->law = std::make_unique<ipc::LawFollower>(header, trust);
       return impl->board.reader.retired() ? nullptr : std::move(impl);
     } catch (const LawLost&) {
       throw;

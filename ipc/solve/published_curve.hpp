@@ -45,8 +45,8 @@ struct EndSearch {
 /// what the plan does next. Has no ring and no clock; the caller checks the waypoints.
 ///
 /// A solver that takes over, and one that has discarded a revision, continue from the last commit:
-/// but for the shown motion nothing else is remembered. Of a finished curve only writer and summary
-/// are valid then. Allocates only when constructed; one thread uses it.
+/// it remembers nothing else but the shown motion. Of a finished curve it then has only the rest
+/// and the summary. Allocates only when constructed; one thread uses it.
 class PublishedCurve {
  public:
   /// Maximum number of candidates that the searches of one step build and compare with the limits.

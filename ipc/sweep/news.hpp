@@ -12,7 +12,7 @@
 
 namespace splinecast::ipc {
 
-/// What is reported of a stream that is to be solved.
+/// What a process reports of a stream that it solves or waits for.
 enum class SweepNews : std::uint8_t {
   waiting,         ///< there is no producer yet, or the stream has been removed
   solving,         ///< it is solved here now

@@ -72,10 +72,10 @@ ipc::SegmentCopy take_segment(ByteReader& in, std::size_t dimensions) {
                            is_time_in_range(segment.right / 2) &&
                            is_time_in_range(segment.natural_right / 2) &&
                            segment.left <= segment.right && segment.right <= segment.natural_right;
+  if (!is_in_range) throw BadMessage("its times are not in order");
   std::int64_t length = 0;
-  if (!is_in_range ||
-      __builtin_sub_overflow(segment.natural_right.count(), segment.left.count(), &length)) {
-    throw BadMessage("its times are not in order");
+  if (__builtin_sub_overflow(segment.natural_right.count(), segment.left.count(), &length)) {
+    throw BadMessage("it is longer than 2^63 ns");
   }
   segment.coefficients = in.take_doubles(static_cast<std::size_t>(segment.order) * dimensions);
   segment.waypoint = in.take_doubles(segment.has_waypoint ? dimensions : 0);

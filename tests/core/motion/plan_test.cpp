@@ -23,10 +23,12 @@ TEST(Plan, KeepsItsInvariantsInRandomOperations) {
   EXPECT_GT(facts.stops_checked, 0U);
 }
 
-/// A newer entry that begins where such an entry has ended passes over what is later only.
-TEST(Plan, AnEntryThatEndsAtTheNewestWaypointMeetsItAlsoIfAnotherEntryFollows) {
-  using std::chrono::milliseconds;
-  const std::vector<double> zero{0};
+using std::chrono::milliseconds;
+
+const std::vector<double> zero{0};
+
+/// A plan whose entry ends at the last of three waypoints, at 300 ms; two later ones wait.
+core::Plan entered_at_newest() {
   core::Plan plan(1, {});
   plan.begin({milliseconds(0), zero, zero, zero});
   for (const int ms : {100, 200, 300}) {
@@ -40,15 +42,28 @@ TEST(Plan, AnEntryThatEndsAtTheNewestWaypointMeetsItAlsoIfAnotherEntryFollows) {
   EXPECT_EQ(plan.passed_over(), 2U);
   (void)plan.append({.time = milliseconds(1000), .position = zero});
   (void)plan.append({.time = milliseconds(1100), .position = zero});
+  return plan;
+}
+
+TEST(Plan, AnEntryThatEndsAtTheNewestWaypointMeetsItAlsoIfAnotherEntryFollows) {
+  core::Plan plan = entered_at_newest();
   plan.enter({.knot = 4, .known = 5, .state = {milliseconds(1100), zero, zero, zero}},
              Instant{milliseconds(900), zero, zero, zero});
   EXPECT_EQ(plan.passed_over(), 3U);  // 0, 1 and 3
   EXPECT_EQ(plan.unmet(), 3U);
 }
 
+TEST(Plan, AnEntryThatEndsAtTheNewestWaypointMeetsItAlsoIfAnEndFollows) {
+  core::Plan entered = entered_at_newest();
+  entered.end_by_entry(milliseconds(1200), Instant{milliseconds(900), zero, zero, zero});
+  EXPECT_EQ(entered.passed_over(), 3U);  // 0, 1 and 3; it ends at 4
+  core::Plan rests = entered_at_newest();
+  rests.end_at_newest();
+  EXPECT_EQ(rests.passed_over(), 3U);
+}
+
 /// The pieces that end a curve are executed at the largest rate of a law, too.
 TEST(PlanSearch, ComparesAnEndWithTheLimitsAtTheLargestRate) {
-  using std::chrono::milliseconds;
   core::WindowOptions how;
   how.largest_rate = 2;
   how.limits = {.velocity = {1}, .acceleration = {4}, .jerk = {40}};
