@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Removes each correction and checks that its tests then fail. Writes tests/defects/README.md.
 
-    run.py [NAME ...]     for all patches, or those named, for example 07: applies, builds, runs its tests, reports
+    run.py [NAME ...]     for all patches, or those named, for example held-zero: applies, builds, runs its tests, reports
     run.py --page         writes the page from the patches and the results of the last run
     run.py --check        exits with 1 if a patch does not apply, or the page is not up to date
     run.py --keep         for all patches, without writing results and page; those of headers are applied together
@@ -55,10 +55,7 @@ Each patch in this folder removes one correction. `./run defects` applies the pa
 that the named tests fail. In the last run, the tests of {failed} of {all} patches failed; the run took {minutes} min.
 [`results.json`](results.json) contains the message of each test.
 
-Some corrections have no patch, because a new design has replaced the code: an item is no longer tried on the curve's
-own window, the length of a stop is computed with a formula, and an entry is searched before a stop. Their tests remain:
-`StopSegment.OfAnyStateTakesAFiniteTime`, `StopSegment.IsValidWhileOnePositionRepeatsUntilVelocitiesAreDenormal` and
-`FirstWaypoint.MayBeAtTheSettledTimeOfTheStepThatTakesIt`.
+Patches of older corrections are not kept; their tests are.
 
 `tests/defects/run.py --page` writes this page.
 """
@@ -350,9 +347,9 @@ def make_page():
 
 
 def check():
-    """Exits with messages if a patch does not apply or the page is not up to date."""
+    """Exits with messages if a patch does not apply to the present lines, or the page is not up to date."""
     refused = [f"{name}.patch does not apply:\n{said}" for name, path in find_patches().items()
-               if (said := patch(PROJECT, path, "--dry-run")) is not None]
+               if (said := patch(PROJECT, path, "--dry-run", "--fuzz=0")) is not None]
     if PAGE.read_text(encoding="utf-8") != make_page():
         refused.append(f"{PAGE} is not up to date: run run.py --page")
     sys.exit("\n".join(refused) or 0)
