@@ -44,7 +44,7 @@ std::string why_freeze_ahead(const AdviceSource& source) {
   if (!source.solved->was_late()) return "no revision was late";
   return fmt::format("doubled: {} deadline misses and {} late commits with {}",
                      source.solved->deadline_misses, source.solved->late_commits,
-                     in_milliseconds(source.solved->how.freeze_ahead));
+                     in_milliseconds(source.solved->how.settle_ahead));
 }
 
 std::vector<Item> items_of(const Advice& advice, const AdviceSource& source) {
@@ -52,9 +52,9 @@ std::vector<Item> items_of(const Advice& advice, const AdviceSource& source) {
       {"lead", "lead", in_milliseconds(advice.lead),
        lead_in_words(advice.intervals, advice.how, advice.lead)},
       {"settle", "settle lag K", fmt::format("{}", advice.how.settle), why_settle(advice)},
-      {"freeze_ahead", "freeze-ahead", in_milliseconds(advice.how.freeze_ahead),
+      {"freeze_ahead", "freeze-ahead", in_milliseconds(advice.how.settle_ahead),
        why_freeze_ahead(source)},
-      {"stop_time", "stop time", in_milliseconds(advice.limits.stop_time),
+      {"stop_time", "stop time", in_milliseconds(advice.limits.stop_length),
        "a stop from peak velocity v takes 1.5 v/T, within the acceleration limits"},
       {"max_velocity", "velocity limits", list_of(advice.limits.velocity, source, "/s"),
        "3 times the 95 % values"},
@@ -101,24 +101,24 @@ ordered_json to_json(const DimensionMotion& motion, const std::string& column) {
 }
 
 ordered_json to_json(const SilenceEffect& silence) {
-  ordered_json way_back = ordered_json::array();
-  for (const auto& seconds : silence.way_back) {
-    way_back.push_back(seconds ? ordered_json(*seconds) : ordered_json());
+  ordered_json return_time = ordered_json::array();
+  for (const auto& seconds : silence.return_time) {
+    return_time.push_back(seconds ? ordered_json(*seconds) : ordered_json());
   }
   return {{"lead_ns", silence.lead.count()},
           {"silence_ns", silence.silence.count()},
           {"depth_left_ns", silence.depth_left.count()},
           {"dry_ns", silence.dry.count()},
           {"comes_to_rest", silence.comes_to_rest},
-          {"way_back_s", way_back}};
+          {"way_back_s", return_time}};
 }
 
 ordered_json solved_json(const AdviceSource& source) {
   if (!source.solved) return nullptr;
-  const auto& [how, stop_time, low_water, deadline_misses, late_commits] = *source.solved;
+  const auto& [how, stop_length, low_water, deadline_misses, late_commits] = *source.solved;
   return {{"settle", how.settle},
-          {"freeze_ahead_ns", how.freeze_ahead.count()},
-          {"stop_time_ns", stop_time.count()},
+          {"freeze_ahead_ns", how.settle_ahead.count()},
+          {"stop_time_ns", stop_length.count()},
           {"low_water_ns", low_water ? ordered_json(low_water->count()) : ordered_json()},
           {"deadline_misses", deadline_misses},
           {"late_commits", late_commits}};
@@ -138,8 +138,8 @@ ordered_json advised_json(const Advice& advice) {
   return {{"lead_ns", advice.lead.count()},
           {"depth_needed_ns", advice.depth_needed.count()},
           {"settle", advice.how.settle},
-          {"freeze_ahead_ns", advice.how.freeze_ahead.count()},
-          {"stop_time_ns", advice.limits.stop_time.count()},
+          {"freeze_ahead_ns", advice.how.settle_ahead.count()},
+          {"stop_time_ns", advice.limits.stop_length.count()},
           {"max_velocity", advice.limits.velocity},
           {"max_acceleration", advice.limits.acceleration}};
 }
@@ -159,11 +159,11 @@ std::string intervals_in_words(const Advice& advice, const AdviceSource& source)
 
 std::string solved_in_words(const AdviceSource& source) {
   if (!source.solved) return {};
-  const auto& [how, stop_time, low_water, deadline_misses, late_commits] = *source.solved;
+  const auto& [how, stop_length, low_water, deadline_misses, late_commits] = *source.solved;
   return fmt::format(
       "{:<15} K = {}, freeze-ahead {}, stop time {}; least depth {}; {} deadline misses, "
       "{} late commits\n",
-      "solver", how.settle, in_milliseconds(how.freeze_ahead), in_milliseconds(stop_time),
+      "solver", how.settle, in_milliseconds(how.settle_ahead), in_milliseconds(stop_length),
       low_water ? in_milliseconds(*low_water) : "unknown", deadline_misses, late_commits);
 }
 
@@ -180,11 +180,11 @@ std::string motion_in_words(const Advice& advice, const AdviceSource& source) {
   return text;
 }
 
-std::string way_back_in_words(const SilenceEffect& silence, const AdviceSource& source) {
+std::string return_time_in_words(const SilenceEffect& silence, const AdviceSource& source) {
   if (silence.dry == Time::zero()) return {};
   std::string text;
-  for (std::size_t d = 0; d < silence.way_back.size(); ++d) {
-    const auto& seconds = silence.way_back[d];
+  for (std::size_t d = 0; d < silence.return_time.size(); ++d) {
+    const auto& seconds = silence.return_time[d];
     text += fmt::format("{}{} {}", text.empty() ? "; time to return: " : ", ",
                         name_and_unit(ipc::printable(source.columns[d])).first,
                         seconds ? fmt::format("{:.2g} s", *seconds) : "never at its peak velocity");
@@ -199,7 +199,7 @@ std::string in_milliseconds(Time t) { return fmt::format("{:.6g} ms", to_seconds
 std::string lead_in_words(const Intervals& intervals, const SolvedHow& how, Time lead) {
   const Time depth = depth_needed(intervals.median, how);
   std::string why = fmt::format("freeze-ahead {} + {} intervals of {} = {}, and jitter of {}",
-                                in_milliseconds(how.freeze_ahead), how.settle + 1,
+                                in_milliseconds(how.settle_ahead), how.settle + 1,
                                 in_milliseconds(intervals.median), in_milliseconds(depth),
                                 in_milliseconds(intervals.jitter));
   if (lead == kLeastLead) why += "; at least " + in_milliseconds(kLeastLead);
@@ -248,7 +248,7 @@ std::string in_words(const Advice& advice, const AdviceSource& source) {
   for (const SilenceEffect& silence : advice.silences) {
     text += fmt::format("silence of {}, lead {}: {}{}\n", in_milliseconds(silence.silence),
                         in_milliseconds(silence.lead), in_words(silence),
-                        way_back_in_words(silence, source));
+                        return_time_in_words(silence, source));
   }
   for (const std::string& note : notes_of(advice, source)) {
     text += fmt::format("note: {}\n", ipc::printable(note));

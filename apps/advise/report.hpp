@@ -22,7 +22,7 @@ struct AdviceSource {
   /// Options and counters of a stream that a solver has attached to.
   struct Solved {
     SolvedHow how{};
-    Time stop_time{};
+    Time stop_length{};
     std::optional<Time> low_water{};  ///< least depth so far
     std::size_t deadline_misses = 0;  ///< revisions discarded because they were too late
     std::size_t late_commits = 0;     ///< revisions committed although they were too late

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "apps/advise/report.hpp"
+#include "apps/cli/option_rows.hpp"
 #include "apps/cli/options.hpp"
 #include "apps/cli/verb.hpp"
 #include "apps/output/stream.hpp"
@@ -28,7 +29,7 @@ struct AdviseOptions {
   std::string source;
   TableOptions table;
   std::optional<std::size_t> settle;
-  std::optional<Time> freeze_ahead;
+  std::optional<Time> settle_ahead;
   bool json = false;
   Trust trust;
 };
@@ -40,11 +41,11 @@ struct Rows {
 };
 
 Rows rows_of_file(const AdviseOptions& options) {
-  constexpr IngestLimits kAnyInterval{.min_interval = Time(1), .max_interval = Time::max()};
+  constexpr ipc::IntervalRange kAnyInterval{.least = Time(1), .most = Time::max()};
   Rows rows{.table = read_waypoints(options.source, options.table), .source = {}};
   rows.source.name = rows.table.file;
   const LateRows late =
-      prepare(rows.table, {.limits = kAnyInterval, .late = LatePolicy::pass}, nullptr);
+      prepare(rows.table, {.intervals = kAnyInterval, .late = LatePolicy::pass}, nullptr);
   rows.source.duplicates = late.duplicate;
   rows.source.out_of_order = late.out_of_order;
   return rows;
@@ -55,8 +56,8 @@ std::optional<AdviceSource::Solved> solved_of(const ipc::StreamInfo& info) {
   if (!info.spline || info.spline->stream_id != info.waypoints->stream_id) return std::nullopt;
   const ipc::LiveOptions live = ipc::live_options(*info.spline).value_or(ipc::LiveOptions{});
   AdviceSource::Solved solved{
-      .how = {.settle = info.spline->settle, .freeze_ahead = live.freeze_ahead},
-      .stop_time = Time(info.spline->stop_time),
+      .how = {.settle = info.spline->settle, .settle_ahead = live.settle_ahead},
+      .stop_length = ipc::window_options(*info.spline).stop_length,
       .deadline_misses = info.summary.deadline_misses,
       .late_commits = info.summary.late_commits};
   if (info.summary.low_water < Time::max()) solved.low_water = info.summary.low_water;
@@ -94,9 +95,9 @@ Rows rows_of(const AdviseOptions& options) {
 
 /// The freeze-ahead to recommend; doubles the stream's own if revisions were late.
 Time freeze_ahead_of(const AdviseOptions& options, const AdviceSource& source) {
-  if (options.freeze_ahead) return *options.freeze_ahead;
-  if (!source.solved) return SolvedHow{}.freeze_ahead;
-  const Time own = source.solved->how.freeze_ahead;
+  if (options.settle_ahead) return *options.settle_ahead;
+  if (!source.solved) return SolvedHow{}.settle_ahead;
+  const Time own = source.solved->how.settle_ahead;
   return source.solved->was_late() ? saturated_product(own, 2) : own;
 }
 
@@ -121,14 +122,14 @@ void add_advise(Command& verb, Action& action) {
               "Waypoint file, CSV or TUM text, - for standard input; or a stream, to analyze the "
               "waypoints in its ring (write ./NAME for a file of that name)")
       .required();
-  add_settle(verb, options->settle)
+  add_curve_option<&SolverOptions::settle>(verb, options->settle, "K")
       .help(
           "Settle lag of the solver in knots, 0 to 64 (default: the stream's own; for a file 8, or "
           "less if 8 needs a lead of more than 1 s)");
   verb.option(
           "--freeze-ahead",
           [options](const std::string& text) {
-            options->freeze_ahead = time_within("--freeze-ahead", text, TimeUnit::milliseconds);
+            options->settle_ahead = time_within("--freeze-ahead", text, TimeUnit::milliseconds);
           },
           "Time ahead of now, in ms, up to which the curve is settled: above 0 (default: 5, or the "
           "stream's own)")

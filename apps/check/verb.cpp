@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/check/excesses.hpp"
+#include "apps/cli/option_rows.hpp"
 #include "apps/cli/options.hpp"
 #include "apps/cli/verb.hpp"
 #include "apps/fit/curve.hpp"
@@ -191,10 +192,7 @@ void add_check(Command& verb, Action& action) {
             "Boundary condition at the last waypoint, or rest: at rest as a live stream ends, "
             "within the limits (default: rest; with --start periodic and for normalized the "
             "method's own)");
-  add_seconds(verb, "--stop-time", options->curve.rest.stop_time,
-              "Duration in s of a stop after the last waypoint, as of 'solve', above 0 (default "
-              "0.25)",
-              kPositiveTime);
+  add_curve_option<&SolverOptions::stop_time>(verb, options->curve.rest.stop_length, "SECONDS");
   add_table_options(verb, options->table);
   verb.flag("--json", options->json, "Print JSON");
   verb.callback([&action, options] {

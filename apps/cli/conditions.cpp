@@ -9,14 +9,14 @@
 #include "apps/process/messages.hpp"
 
 namespace splinecast::apps {
-namespace {
 
-/// Replaces the word `rest` of earlier versions by `clamped`, with a message on stderr.
 std::string present_word(const std::string& option, const std::string& text) {
   if (text != "rest") return text;
   say(fmt::format("{}: 'rest' is now 'clamped'", option));
   return "clamped";
 }
+
+namespace {
 
 /// The condition of this name. `others`: what else the option accepts.
 Condition condition_named(const std::string& option, const std::string& text,
@@ -56,20 +56,6 @@ void add_end(Command& verb, std::optional<End>& value, const std::string& help) 
           },
           help)
       .type("CONDITION");
-}
-
-void add_tail(Command& verb, std::optional<Tail>& value) {
-  verb.option(
-          "--tail",
-          [&value](const std::string& text) {
-            value = parse_tail(present_word("--tail", text));
-            if (value) return;
-            throw UsageError(
-                "--tail",
-                fmt::format("'{}' is not one of bessel, parabolic, natural, clamped", text));
-          },
-          "Boundary condition at the newest waypoint of a stream that continues (default bessel)")
-      .type("bessel|parabolic|natural|clamped");
 }
 
 }  // namespace splinecast::apps

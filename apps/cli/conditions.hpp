@@ -24,10 +24,12 @@ using End = std::variant<Condition, AtRest>;
 /// stderr: for a curve that cannot end as a live stream.
 void take_former_rest(std::optional<End>& end);
 
-/// Add an option for a boundary condition, `--end` with a condition or `rest`, and `--tail`.
+/// Replaces the word `rest` of earlier versions by `clamped`, with a message on stderr.
+[[nodiscard]] std::string present_word(const std::string& option, const std::string& text);
+
+/// Add an option for a boundary condition, or `--end` with a condition or `rest`.
 void add_condition(Command& verb, const std::string& name, std::optional<Condition>& value,
                    const std::string& help);
 void add_end(Command& verb, std::optional<End>& value, const std::string& help);
-void add_tail(Command& verb, std::optional<Tail>& value);
 
 }  // namespace splinecast::apps

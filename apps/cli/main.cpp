@@ -40,8 +40,8 @@ int run_program(int argc, char** argv) {
     if (!verb.empty() && verb.front() != '-') require_verb(program, verb);
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const bool asked_for_help = program.exit(error) == 0;
-    if (!asked_for_help) return kBadUsageOrInput;
+    const bool is_help = program.exit(error) == 0;
+    if (!is_help) return kBadUsageOrInput;
     return std::cout.flush() ? kOk : kFailed;
   } catch (const UsageError& error) {
     program.exit(CLI::ValidationError(error.what()));

@@ -8,7 +8,7 @@
 #include <charconv>
 #include <chrono>
 
-#include "apps/cli/conditions.hpp"
+#include "apps/cli/option_rows.hpp"
 #include "apps/files/numbers.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
@@ -160,35 +160,6 @@ const Method& method_named(const std::string& text) {
   throw UsageError("--method", fmt::format("'{}' is not one of {}", text, method_names(false)));
 }
 
-void add_lambda(Command& verb, std::optional<double>& lambda, bool* automatic) {
-  verb.option(
-          "--lambda",
-          [&lambda, automatic](const std::string& text) {
-            if (automatic != nullptr && text == "auto") {
-              *automatic = true;
-              return;
-            }
-            lambda = parse_number(text);
-            if (lambda && *lambda >= 0 && is_usable(*lambda)) return;
-            throw UsageError("--lambda", fmt::format("'{}' is not a number from 0 to 1e100", text));
-          },
-          automatic == nullptr
-              ? "Smoothing parameter in s^3, 0 to 1e100; required by the method smoothing"
-              : "Smoothing parameter in s^3, 0 to 1e100, or auto: by generalised "
-                "cross-validation (default auto)")
-      .type(automatic == nullptr ? "L" : "L|auto");
-}
-
-void add_time_scale(Command& verb, std::optional<double>& time_scale) {
-  verb.option(
-          "--time-scale",
-          [&time_scale](const std::string& text) {
-            time_scale = number_within("--time-scale", text);
-          },
-          "For the method rounded: seconds equal to one unit of position, 1e-6 to 1e9 (default 1)")
-      .type("SECONDS");
-}
-
 void add_solver_curve(Command& verb, SolverOptions& options) {
   verb.option(
           "--method",
@@ -201,30 +172,33 @@ void add_solver_curve(Command& verb, SolverOptions& options) {
           },
           fmt::format("Interpolant: {} (default c2)", method_names(true)))
       .type("METHOD");
-  add_lambda(verb, options.lambda, nullptr);
-  add_time_scale(verb, options.time_scale);
-  add_settle(verb, options.settle);
-  add_tail(verb, options.tail);
-  add_force_lag(verb, options.force_lag);
+  add_method_options(verb, options.lambda, nullptr, options.time_scale);
+  add_online_options(verb, options.settle, options.tail, options.force_lag);
 }
 
-void add_force_lag(Command& verb, bool& force_lag) {
-  verb.flag("--force-lag", force_lag, "Accept a settle lag that is too short for lambda");
+void add_method_options(Command& verb, std::optional<double>& lambda, bool* automatic,
+                        std::optional<double>& scale) {
+  if (automatic == nullptr) {
+    add_curve_option<&SolverOptions::lambda>(verb, lambda, "L");
+  } else {
+    verb.option(
+            "--lambda",
+            [&lambda, automatic](const std::string& text) {
+              *automatic = text == "auto";
+              if (!*automatic) lambda = row_value(ipc::option_of<&SolverOptions::lambda>(), text);
+            },
+            "Smoothing parameter λ of the method smoothing: 0 to 1e100 s³, or auto: by generalised "
+            "cross-validation (default auto)")
+        .type("L|auto");
+  }
+  add_curve_option<&SolverOptions::time_scale>(verb, scale, "SECONDS");
 }
 
-Argument add_settle(Command& verb, std::optional<std::size_t>& value) {
-  return verb
-      .option(
-          "--settle",
-          [&value](const std::string& text) {
-            value = parse_count(text);
-            if (value && *value <= core::kMaxSettle) return;
-            throw UsageError("--settle", fmt::format("'{}' is not an integer from 0 to {}", text,
-                                                     core::kMaxSettle));
-          },
-          "Settle lag: number of newer knots after which a knot no longer changes, 0 to 64 "
-          "(default 8 for c2, 64 for smoothing, else the look-ahead of the method)")
-      .type("K");
+void add_online_options(Command& verb, std::optional<std::size_t>& settle,
+                        std::optional<Tail>& tail, bool& is_forced) {
+  add_curve_option<&SolverOptions::settle>(verb, settle, "K");
+  add_curve_option<&SolverOptions::tail>(verb, tail, "bessel|parabolic|natural|clamped");
+  add_curve_flag<&SolverOptions::force_lag>(verb, is_forced);
 }
 
 Argument add_seconds(Command& verb, const std::string& name, std::optional<Time>& value,

@@ -9,7 +9,6 @@
 
 #include "apps/cli/command.hpp"
 #include "apps/tables/waypoints.hpp"
-#include "core/online/sliding_window.hpp"
 #include "splinecast/options.hpp"
 
 namespace splinecast::apps {
@@ -24,11 +23,12 @@ void add_time_unit(Command& verb, std::optional<TimeUnit>& unit);
 /// Adds the options of a curve that is solved online: `--method`, `--lambda`, `--time-scale`,
 /// `--settle`, `--tail`, `--force-lag`.
 void add_solver_curve(Command& verb, SolverOptions& options);
-void add_force_lag(Command& verb, bool& force_lag);
-
-/// Adds `--lambda`. If `automatic` is not null, `auto` is a valid value and sets it.
-void add_lambda(Command& verb, std::optional<double>& lambda, bool* automatic);
-void add_time_scale(Command& verb, std::optional<double>& time_scale);
+/// Adds `--lambda` and `--time-scale`. If `automatic` is not null, `--lambda auto` sets it.
+void add_method_options(Command& verb, std::optional<double>& lambda, bool* automatic,
+                        std::optional<double>& scale);
+/// Adds `--settle`, `--tail` and `--force-lag`.
+void add_online_options(Command& verb, std::optional<std::size_t>& settle,
+                        std::optional<Tail>& tail, bool& is_forced);
 
 /// The longest time of an option: a time of a stream plus twice this does not overflow.
 inline constexpr Time kLongestTime = std::chrono::hours(24 * 366 * 100);
@@ -49,8 +49,7 @@ inline constexpr TimeRange kPositiveTime{Time(1), kLongestTime};
 inline constexpr NumberRange kPositiveNumber{1e-6, 1e9};
 inline constexpr CountRange kAnyCount{1, std::size_t{1} << 53U};
 
-/// Add an option for a settle lag, or a time in seconds or milliseconds.
-Argument add_settle(Command& verb, std::optional<std::size_t>& value);
+/// Add an option for a time in seconds or milliseconds.
 Argument add_seconds(Command& verb, const std::string& name, std::optional<Time>& value,
                      const std::string& help, const TimeRange& range = kAnyTime);
 Argument add_seconds(Command& verb, const std::string& name, Time& value, const std::string& help,

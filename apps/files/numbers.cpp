@@ -134,8 +134,8 @@ bool take_short_number(std::string_view& text, double& value) noexcept {
     fraction = take();
   }
   const std::size_t count = whole + fraction;
-  const bool goes_on = at != end && (*at == 'e' || *at == 'E');
-  if (whole == 0 || count > kMostDigits || goes_on) return false;
+  const bool continues = at != end && (*at == 'e' || *at == 'E');
+  if (whole == 0 || count > kMostDigits || continues) return false;
   value = static_cast<double>(digits) / kPowers[fraction];
   if (negative) value = -value;
   text.remove_prefix(static_cast<std::size_t>(at - text.data()));

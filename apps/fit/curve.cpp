@@ -111,10 +111,9 @@ Condition tail_of(const WaypointTable& table) {
 class PieceFit {
  public:
   PieceFit(const WaypointTable& table, const Method& method, const CurveOptions& options)
-      : table_(table), options_(options), how_{.method = &method, .lambda = 0, .time_scale = 1} {
+      : table_(table), options_(options), how_{&method, 0, options.scale.value_or(1)} {
     require_derivatives(table, method);
     if (method.smooths()) how_.lambda = chosen_lambda(table.waypoints(), options);
-    how_.time_scale = options.time_scale.value_or(how_.time_scale);
     if (options.online && options.tail && method.has_own_tail()) {
       throw std::invalid_argument("the tail of method " + std::string(method.name) + " is fixed");
     }
@@ -144,7 +143,7 @@ class PieceFit {
             .settle = options_.settle.value_or(core::default_settle(*how_.method)),
             .tail = options_.tail.value_or(Tail::bessel),
             .start = or_own(options_.start),
-            .force_lag = options_.force_lag};
+            .accepts_short_lag = options_.force_lag};
   }
 
   const WaypointTable& table_;

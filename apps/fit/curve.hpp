@@ -16,7 +16,7 @@ namespace splinecast::apps {
 struct CurveOptions {
   std::optional<double> lambda{};  ///< of smoothing; unset: by cross-validation
   bool lambda_is_auto = false;     ///< `--lambda auto` was given
-  std::optional<double> time_scale{};
+  std::optional<double> scale{};   ///< of rounded, s
   std::optional<Condition> start{};
   std::optional<End> end{};
   RestRules rest{};  ///< of an end at rest

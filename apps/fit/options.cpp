@@ -9,17 +9,14 @@
 namespace splinecast::apps {
 
 void add_curve(Command& verb, CurveOptions& options, const std::string& end_help) {
-  add_lambda(verb, options.lambda, &options.lambda_is_auto);
-  add_time_scale(verb, options.time_scale);
+  add_method_options(verb, options.lambda, &options.lambda_is_auto, options.scale);
   add_condition(
       verb, "--start", options.start,
       "Boundary condition at the first waypoint (default: natural for c2, else the method's own)");
   add_end(verb, options.end, end_help);
   verb.flag("--online", options.online,
             "Fit online through the sliding window, as the solver does");
-  add_settle(verb, options.settle);
-  add_tail(verb, options.tail);
-  add_force_lag(verb, options.force_lag);
+  add_online_options(verb, options.settle, options.tail, options.force_lag);
   add_gap(verb, options.gap);
 }
 
@@ -38,7 +35,7 @@ void require_consistent(const CurveOptions& curve, std::span<const Method* const
   if (curve.force_lag && !has("smoothing")) {
     refuse("--force-lag", "goes with --method smoothing only");
   }
-  if (curve.time_scale && !has("rounded")) {
+  if (curve.scale && !has("rounded")) {
     refuse("--time-scale", "goes with --method rounded only");
   }
 }

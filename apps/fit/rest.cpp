@@ -59,7 +59,7 @@ class RestSearch {
     for (std::size_t i = 0; i < waypoints.size(); ++i) {
       shown_.note(waypoints.times[i], waypoints.positions.subspan(i * dimensions, dimensions));
     }
-    shown_.look(rules.stop_time);
+    shown_.look(rules.stop_length);
     limits_.acceleration.resize(dimensions);
     search_.write_accelerations(rules.limits, shown_.limits(), limits_.acceleration);
     path.evaluate(last(), rest_.ref());
@@ -111,7 +111,7 @@ class RestSearch {
                                      state_.acceleration()};
       const core::EntryRules entry{.limits = &rules_.limits,
                                    .shown = &shown_.limits(),
-                                   .least = ipc::LiveOptions{}.min_entry,
+                                   .least = ipc::LiveOptions{}.least_entry,
                                    .reach = &range_};
       int tries = std::numeric_limits<int>::max();
       search_.restart(0);
@@ -131,7 +131,7 @@ class RestSearch {
     core::align_rotations(rules_.kinds, state_.velocity(), state_.ref().acceleration);
     const splinecast::Instant from{last(), state_.position(), state_.velocity(),
                                    state_.acceleration()};
-    Time length = core::stop_time_within({rules_.limits, rules_.kinds, rules_.stop_time}, from);
+    Time length = core::stop_time_within({rules_.limits, rules_.kinds, rules_.stop_length}, from);
     const auto& given = rules_.limits.acceleration;
     if (std::ranges::any_of(given, [](double limit) { return limit > 0; })) {
       length = std::min(length, core::stop_time_within({limits_, rules_.kinds, Time(1)}, from));

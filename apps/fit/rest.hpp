@@ -15,7 +15,7 @@ namespace splinecast::apps {
 struct RestRules {
   MotionLimits limits{};  ///< lists of one value per dimension, or empty
   DimensionKinds kinds{};
-  Time stop_time = core::WindowOptions{}.stop_time;  ///< > 0: see core::StopRules
+  Time stop_length = core::WindowOptions{}.stop_length;  ///< > 0: see core::StopRules
 };
 
 /// A curve and how it ends.

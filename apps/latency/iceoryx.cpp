@@ -53,7 +53,7 @@ class Roudi {
       silence();
       execlp("iox-roudi", "iox-roudi", "-m", "off", "-l", "off", nullptr);
       const char failed = 1;
-      [[maybe_unused]] const ssize_t told = write(ends[1], &failed, 1);
+      [[maybe_unused]] const ssize_t written = write(ends[1], &failed, 1);
       _exit(kFailed);
     }
     close(ends[1]);

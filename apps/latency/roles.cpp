@@ -53,7 +53,7 @@ SolverOptions solver_options(const LatencyOptions& options) {
 /// revisions that only raise `settled_until`, one per half freeze-ahead.
 std::size_t most_revisions(const LatencyOptions& options) {
   const Time all = options.warmup + options.duration + options.lead + kLatencyPatience;
-  const Time settles = ipc::LiveOptions().freeze_ahead / 4;
+  const Time settles = ipc::LiveOptions().settle_ahead / 4;
   return waypoints_in(options, all) + static_cast<std::size_t>(all / settles);
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "apps/cli/option_rows.hpp"
 #include "apps/cli/options.hpp"
 #include "apps/cli/verb.hpp"
 #include "apps/files/numbers.hpp"
@@ -175,7 +176,7 @@ void add_work(Command& verb, LatencyOptions& options) {
       .type("MS");
   add_count(verb, "--dims", options.dimensions, "Number of dimensions, 1 to 64 (default 7)",
             {1, kMaxDimensions});
-  add_settle(verb, options.settle);
+  add_curve_option<&SolverOptions::settle>(verb, options.settle, "K");
   add_count(verb, "--readers", options.readers, "Number of reader processes, 1 to 64 (default 1)",
             {1, 64});
   verb.flag("--embedded", options.embedded, "Solve in the producer's process");

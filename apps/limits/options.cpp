@@ -110,19 +110,6 @@ void add_limit_options(Command& verb, LimitOptions& options, const std::string& 
       .type("FILE");
 }
 
-void add_beyond(Command& verb, std::optional<Beyond>& beyond) {
-  verb.option(
-          "--beyond",
-          [&beyond](const std::string& text) {
-            beyond = parse_beyond(text);
-            if (beyond) return;
-            throw UsageError("--beyond", fmt::format("'{}' is not report, refuse or enter", text));
-          },
-          "Action for a waypoint with which the curve exceeds a limit: report, refuse, or enter: "
-          "leave the spline within the limits (default report)")
-      .type("report|refuse|enter");
-}
-
 LimitGaps limit_gaps(const MotionLimits& limits, std::span<const NamedLimits> joints,
                      std::span<const std::string> names, std::span<const Dimension> kinds) {
   LimitGaps gaps{.unmatched = core::unmatched(joints, names), .without = {}};

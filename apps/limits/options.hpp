@@ -23,9 +23,6 @@ struct LimitOptions {
 /// ends the help of the first three: to which parts of the curve they apply.
 void add_limit_options(Command& verb, LimitOptions& options, const std::string& scope = "");
 
-/// Adds `--beyond`.
-void add_beyond(Command& verb, std::optional<Beyond>& beyond);
-
 /// Limits without a dimension, and dimensions of a curve without a limit.
 struct LimitGaps {
   std::vector<std::string> unmatched;  ///< joints of the file that match no dimension

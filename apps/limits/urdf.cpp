@@ -75,10 +75,10 @@ void require_flat(const std::string& name, const std::string& text) {
   constexpr int kDeepest = 200;
   int depth = 0;
   for (std::size_t i = text.find('<'); i < text.size(); i = text.find('<', i)) {
-    const std::size_t behind =
+    const std::size_t past =
         std::max(skip(text, i, "<!--", "-->"), skip(text, i, "<![CDATA[", "]]>"));
-    if (behind > i) {
-      i = behind;
+    if (past > i) {
+      i = past;
       continue;
     }
     if (!begins_element(text, i)) {

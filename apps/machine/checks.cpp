@@ -94,19 +94,19 @@ Finding check_shared_memory(const MachineFacts& facts) {
             .verdict = Verdict::problem,
             .means = mount.type.empty() ? "is not mounted: there is no shared memory"
                                         : fmt::format("is {}, not memory (tmpfs)", mount.type),
-            .mend = "mount -t tmpfs -o mode=1777,size=50% tmpfs /dev/shm"};
+            .fix = "mount -t tmpfs -o mode=1777,size=50% tmpfs /dev/shm"};
   }
   if (fmt::format(",{},", mount.options).find(",ro,") != std::string::npos) {
     return {.check = check,
             .verdict = Verdict::problem,
             .means = "is mounted read-only: no stream can be created",
-            .mend = "mount -o remount,rw /dev/shm"};
+            .fix = "mount -o remount,rw /dev/shm"};
   }
   if (!facts.may_write_shared) {
     return {.check = check,
             .verdict = Verdict::problem,
             .means = "this user may not create files there: no stream can be created",
-            .mend = "chmod 1777 /dev/shm"};
+            .fix = "chmod 1777 /dev/shm"};
   }
   return {.check = check, .means = "is memory (tmpfs), and this user may create streams there"};
 }
@@ -123,7 +123,7 @@ Finding check_room(const MachineFacts& facts, std::size_t another) {
             .verdict = Verdict::problem,
             .means = means + fmt::format("; another stream needs about {}",
                                          mebibytes(static_cast<double>(another))),
-            .mend =
+            .fix =
                 "remove streams (splinecast rm), or mount -o remount,size=1g /dev/shm; in a "
                 "container: --shm-size=1g"};
   }
@@ -131,7 +131,7 @@ Finding check_room(const MachineFacts& facts, std::size_t another) {
     return {.check = check,
             .verdict = Verdict::note,
             .means = means + "; a few streams use it up",
-            .mend = "mount -o remount,size=1g /dev/shm; in a container: --shm-size=1g"};
+            .fix = "mount -o remount,size=1g /dev/shm; in a container: --shm-size=1g"};
   }
   return {.check = check, .means = means};
 }
@@ -152,7 +152,7 @@ Finding check_locked_memory(const MachineFacts& facts, std::size_t mapped) {
   return {.check = check,
           .verdict = Verdict::note,
           .means = means + ": everything works, but their pages may be swapped out",
-          .mend =
+          .fix =
               "`USER - memlock unlimited` in /etc/security/limits.d/splinecast.conf; for a "
               "service: LimitMEMLOCK=infinity"};
 }
@@ -174,7 +174,7 @@ Finding check_priority(const MachineFacts& facts) {
   return {.check = check,
           .verdict = Verdict::note,
           .means = "RLIMIT_RTPRIO is 0: solver and readers share the CPUs with all other processes",
-          .mend =
+          .fix =
               "`USER - rtprio 80` in /etc/security/limits.d/splinecast.conf; for a service: "
               "LimitRTPRIO=80"};
 }
@@ -199,7 +199,7 @@ Finding check_remove_ipc(const MachineFacts& facts) {
   return {.check = check,
           .verdict = Verdict::note,
           .means = "is on: systemd removes this user's streams when the last session ends",
-          .mend =
+          .fix =
               "RemoveIPC=no in /etc/systemd/logind.conf, then systemctl restart systemd-logind; "
               "or run the writers as a service of a system user"};
 }
@@ -218,7 +218,7 @@ Finding check_container(const MachineFacts& facts) {
       .means = facts.in_container ? "yes: only processes that share its /dev/shm see its streams"
                                   : "this is a separate PID namespace: the process ids in streams "
                                     "may have no meaning here",
-      .mend =
+      .fix =
           "start all containers with --ipc=host, or with --ipc=shareable and --ipc=container:NAME"};
 }
 
@@ -240,7 +240,7 @@ Finding check_time_namespace(const MachineFacts& facts) {
           .means = fmt::format("a separate one, its clock {}.{:09} s ahead of the host's: live "
                                "streams from outside are refused",
                                seconds, nanoseconds),
-          .mend = "run producer, solver and readers in one time namespace"};
+          .fix = "run producer, solver and readers in one time namespace"};
 }
 
 std::vector<Finding> check_machine(const MachineFacts& facts, std::size_t another,

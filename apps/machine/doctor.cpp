@@ -70,24 +70,24 @@ Finding finding_of(const LeftName& name) {
       return {.check = check,
               .verdict = Verdict::note,
               .means = fmt::format("its writers have ended; {} bytes remain", name.bytes),
-              .mend = fmt::format("splinecast doctor {} --clean", name.stream)};
+              .fix = fmt::format("splinecast doctor {} --clean", name.stream)};
     case NameState::foreign:
       return {.check = check,
               .verdict = Verdict::note,
               .means = name.why + ": not changed",
-              .mend = "that user can remove it; readers give the user's name with --owner"};
+              .fix = "that user can remove it; readers give the user's name with --owner"};
     case NameState::unknown:
       return {.check = check,
               .verdict = Verdict::note,
               .means = name.why + ": not changed",
-              .mend = "correct this, then run splinecast doctor again"};
+              .fix = "correct this, then run splinecast doctor again"};
     case NameState::hostile:
       break;
   }
   return {.check = check,
           .verdict = Verdict::problem,
           .means = name.why + ": it is neither used nor removed, and blocks the name",
-          .mend = "find the process that created it, then remove it manually"};
+          .fix = "find the process that created it, then remove it manually"};
 }
 
 /// Removes a stream whose owners are proven dead; an error becomes the finding.
@@ -113,7 +113,7 @@ Finding clean(const LeftName& name) {
     return {.check = check,
             .verdict = Verdict::problem,
             .means = error.what(),
-            .mend = "find the process that created it, then remove it manually"};
+            .fix = "find the process that created it, then remove it manually"};
   }
 }
 
@@ -158,7 +158,7 @@ std::optional<Finding> clock_finding(const std::string& stream) {
     return Finding{.check = fmt::format("time namespace of {}", stream),
                    .verdict = Verdict::problem,
                    .means = error.what(),
-                   .mend = "run producer, solver and readers in one time namespace"};
+                   .fix = "run producer, solver and readers in one time namespace"};
   }
 }
 
@@ -182,7 +182,7 @@ std::vector<Finding> examine(const DoctorOptions& options) {
 std::string in_words(const Finding& finding) {
   std::string text =
       fmt::format("{:<8} {:<20} {}\n", to_string(finding.verdict), finding.check, finding.means);
-  if (!finding.mend.empty()) text += fmt::format("{:<29} -> {}\n", "", finding.mend);
+  if (!finding.fix.empty()) text += fmt::format("{:<29} -> {}\n", "", finding.fix);
   return text;
 }
 
@@ -190,7 +190,7 @@ ordered_json to_json(const Finding& finding) {
   return {{"check", finding.check},
           {"verdict", to_string(finding.verdict)},
           {"means", finding.means},
-          {"mend", finding.mend}};
+          {"mend", finding.fix}};
 }
 
 int run_doctor(const DoctorOptions& options) {

@@ -16,8 +16,8 @@ enum class Verdict {
 struct Finding {
   std::string check;  ///< what was checked
   Verdict verdict = Verdict::ok;
-  std::string means;   ///< what was found, and what it means: one line
-  std::string mend{};  ///< how to fix it, one line; empty if there is nothing to fix
+  std::string means;  ///< what was found, and what it means: one line
+  std::string fix{};  ///< how to fix it, one line; empty if there is nothing to fix
 };
 
 }  // namespace splinecast::apps

@@ -54,7 +54,7 @@ Finding check_clock(const MachineFacts& facts) {
   return {.check = check,
           .verdict = Verdict::note,
           .means = means + ": each reading of it is a system call",
-          .mend =
+          .fix =
               "find out why the kernel rejected tsc (dmesg | grep -i tsc); tsc=reliable on its "
               "command line, if the machine's tsc is reliable"};
 }
@@ -77,7 +77,7 @@ Finding check_governor(const MachineFacts& facts) {
   return {.check = "cpu governor",
           .verdict = Verdict::note,
           .means = governor + ": a CPU that has slept starts at a low frequency",
-          .mend = "cpupower frequency-set -g performance"};
+          .fix = "cpupower frequency-set -g performance"};
 }
 
 Finding check_isolated_cpus(const MachineFacts& facts) {
@@ -89,7 +89,7 @@ Finding check_isolated_cpus(const MachineFacts& facts) {
   return {.check = "isolated cpus",
           .verdict = Verdict::note,
           .means = "none: any process may delay a controller",
-          .mend =
+          .fix =
               "isolcpus=LIST on the kernel's command line, and pin processes to these CPUs "
               "(taskset -c LIST)"};
 }
@@ -103,7 +103,7 @@ Finding check_preemption(const MachineFacts& facts) {
   return {.check = "kernel preemption",
           .verdict = Verdict::note,
           .means = preemption + ": the kernel may delay a real-time process for milliseconds",
-          .mend = "apt-get install linux-image-rt-amd64"};
+          .fix = "apt-get install linux-image-rt-amd64"};
 }
 
 Finding check_throttling(const MachineFacts& facts) {
@@ -122,7 +122,7 @@ Finding check_throttling(const MachineFacts& facts) {
                                "us (sched_rt_runtime_us is {})",
                                to_seconds(*stopped) * 1e3, facts.environment.rt_period,
                                facts.environment.rt_runtime),
-          .mend =
+          .fix =
               "let it sleep; or sysctl -w kernel.sched_rt_runtime_us=-1, if no process can block a "
               "CPU"};
 }
@@ -139,7 +139,7 @@ Finding check_huge_pages(const MachineFacts& facts) {
   return {.check = "huge pages",
           .verdict = Verdict::note,
           .means = choice + " for shared memory: the kernel may stop a process to assemble them",
-          .mend = "echo never > /sys/kernel/mm/transparent_hugepage/shmem_enabled"};
+          .fix = "echo never > /sys/kernel/mm/transparent_hugepage/shmem_enabled"};
 }
 
 Finding check_steal(const MachineFacts& facts) {
@@ -168,7 +168,7 @@ Finding check_steal(const MachineFacts& facts) {
   return {.check = "hypervisor",
           .verdict = Verdict::note,
           .means = means + ": other machines use the CPUs, and deadlines are missed",
-          .mend = "give the virtual machine dedicated CPUs"};
+          .fix = "give the virtual machine dedicated CPUs"};
 }
 
 }  // namespace splinecast::apps

@@ -47,16 +47,16 @@ bool has_writer(const std::string& stream) {
 
 LeftName look_at_name(const std::string& stream) {
   LeftName name{.stream = stream};
-  bool stands = false;
+  bool exists = false;
   for (const ipc::RegionKind kind : kKinds) {
     for (const std::string& path : {ipc::region_path(stream, kind), ipc::lock_path(stream, kind)}) {
       struct stat status {};
       if (lstat(path.c_str(), &status) != 0) continue;
-      stands = true;
+      exists = true;
       judge_file(path, status, name);
     }
   }
-  if (!stands) throw NoSuchStream(fmt::format("there is no stream '{}'", stream));
+  if (!exists) throw NoSuchStream(fmt::format("there is no stream '{}'", stream));
   if (name.state == NameState::dead && has_writer(stream)) name.state = NameState::living;
   return name;
 }

@@ -120,11 +120,11 @@ void Formats::add(std::string_view definition) {
 
 std::vector<Field> Formats::fields(std::string_view format) {
   Layout layout;
-  lay_out(format, "", layout);
+  arrange(format, "", layout);
   return std::move(layout.fields);
 }
 
-void Formats::lay_out(std::string_view format, const std::string& prefix, Layout& layout) {
+void Formats::arrange(std::string_view format, const std::string& prefix, Layout& layout) {
   const auto found = formats_.find(format);
   if (found == formats_.end()) throw MessageError(fmt::format("unknown format '{}'", format));
   if (++layout.levels > kMostLevels) {
@@ -141,7 +141,7 @@ void Formats::lay_out(std::string_view format, const std::string& prefix, Layout
       std::string path = prefix + member.name;
       if (member.length > 0) path += fmt::format("[{}]", i);
       if (type == nullptr) {
-        lay_out(member.type, path + ".", layout);
+        arrange(member.type, path + ".", layout);
         continue;
       }
       if (!is_padding) {

@@ -58,7 +58,7 @@ class Formats {
   };
   struct Layout;
 
-  void lay_out(std::string_view format, const std::string& prefix, Layout& layout);
+  void arrange(std::string_view format, const std::string& prefix, Layout& layout);
 
   std::map<std::string, std::vector<Member>, std::less<>> formats_{};
   std::size_t found_ = 0;  ///< fields of all calls, those without bytes included

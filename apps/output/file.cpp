@@ -45,7 +45,7 @@ bool is_special(const std::string& file) {
 }
 
 /// The target of a chain of symbolic links. The target need not exist.
-std::string behind_links(const std::string& path) {
+std::string resolve_links(const std::string& path) {
   constexpr int kMostLinks = 40;  // as in the kernel
   fs::path at(path);
   for (int links = 0; links < kMostLinks; ++links) {
@@ -93,7 +93,7 @@ void require_separate(std::span<const std::string> outputs, std::span<const std:
   }
 }
 
-OutputFile::OutputFile(const std::string& path, Writing writing) : target_(behind_links(path)) {
+OutputFile::OutputFile(const std::string& path, Writing writing) : target_(resolve_links(path)) {
   struct stat status {};
   const bool exists = stat(target_.c_str(), &status) == 0;
   const bool is_replaced =

@@ -79,7 +79,7 @@ Child::Child(const std::function<nlohmann::json()>& run) {
 Child::Child(Child&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)),
       pipe_(std::exchange(other.pipe_, -1)),
-      told_to_end_(other.told_to_end_) {}
+      end_requested_(other.end_requested_) {}
 
 Child::~Child() {
   if (pipe_ >= 0) close(pipe_);
@@ -130,7 +130,8 @@ void Child::signal(int number) const noexcept {
 }
 
 void Child::stop() noexcept {
-  if (!std::exchange(told_to_end_, true)) signal(SIGTERM);  // a second SIGTERM would kill the child
+  if (!std::exchange(end_requested_, true))
+    signal(SIGTERM);  // a second SIGTERM would kill the child
 }
 
 }  // namespace splinecast::apps

@@ -42,7 +42,7 @@ class Child {
  private:
   pid_t pid_ = -1;
   int pipe_ = -1;
-  bool told_to_end_ = false;
+  bool end_requested_ = false;
 };
 
 }  // namespace splinecast::apps

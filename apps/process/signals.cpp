@@ -43,7 +43,7 @@ void (*handler_of(int signal))(int) {
 /// Handler of SIGALRM: the process did not end in time. Calls only async-signal-safe functions.
 void end_at_once(int /*signal*/) {
   constexpr std::string_view kMessage = "splinecast: did not end within 5 s of a signal: aborted\n";
-  [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, kMessage.data(), kMessage.size());
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage.data(), kMessage.size());
   _exit(kInterrupted);
 }
 

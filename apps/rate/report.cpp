@@ -38,7 +38,7 @@ std::string in_words(const LawReport& state) {
   std::string text;
   if (state.is_solved) {
     text = fmt::format("'{}': rate {:g}, slope {:g} /s, {:g} at most; lag {:.3f} s\n", state.law,
-                       state.rate, state.slope, state.largest_rate, to_seconds(state.lag));
+                       state.rate, state.slope, state.max_rate, to_seconds(state.lag));
   } else {
     text = fmt::format("'{}': waiting for a solver\n", state.law);
   }
@@ -56,7 +56,7 @@ ordered_json to_json(const LawReport& state) {
   if (state.is_solved) {
     json["rate"] = state.rate;
     json["slope_per_s"] = state.slope;
-    json["largest_rate"] = state.largest_rate;
+    json["largest_rate"] = state.max_rate;
     json["lag_s"] = to_seconds(state.lag);
   }
   json["commanders"] = ordered_json::array();

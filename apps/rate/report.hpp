@@ -17,7 +17,7 @@ struct LawReport {
   double rate = 1;
   double slope = 0;  ///< [1/s]
   Time lag{};        ///< host time less stream time since the law began
-  double largest_rate = 1;
+  double max_rate = 1;
   std::vector<ipc::CommanderState> commanders;
   std::vector<std::string> followers;  ///< streams that follow the law
 };

@@ -21,6 +21,7 @@
 #include "ipc/law/follower.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
+#include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
@@ -108,7 +109,7 @@ int show(const RateOptions& options) {
     state.rate = point.rates.rate;
     state.slope = point.rates.slope;
     state.lag = law->last_host() - point.stream;
-    state.largest_rate = law->largest_rate();
+    state.max_rate = law->max_rate();
     state.followers = ipc::followers_of(law->header().stream_id, options.trust);
   } else if (state.commanders.empty()) {
     throw NoSuchStream("there is no time law '" + options.law + "'");
@@ -137,7 +138,8 @@ struct Present {
 std::optional<Present> present_law(const RateOptions& options) {
   auto law = open_law(options);
   if (!law) return std::nullopt;
-  const auto from = law->state_at(MonotonicClock().now() + 2 * Time(law->header().freeze_ahead));
+  const auto from =
+      law->state_at(MonotonicClock().now() + 2 * ipc::live_options(law->header())->settle_ahead);
   return from ? std::optional<Present>({std::move(law), *from}) : std::nullopt;
 }
 
@@ -188,7 +190,7 @@ std::optional<Time> sufficient_ramp(const Present& present, std::vector<std::str
 /// Reports the effect of a ramp that is to be requested, or has been. Returns false if it exceeds a
 /// limit and is not forced.
 bool report_effect(const RateOptions& options, const Present& present, bool is_requested) {
-  const double rate = rate_after(options, present.law->largest_rate());
+  const double rate = rate_after(options, present.law->max_rate());
   auto streams = ipc::followers_of(present.law->header().stream_id, options.trust);
   const auto effects = effects_of(present, streams, rate, options.ramp, options.trust);
   if (options.json) {
@@ -217,7 +219,7 @@ bool report_effect(const RateOptions& options, const Present& present, bool is_r
 Time gentle_ramp(const RateOptions& options, const Present& present) {
   constexpr Time kMostDelay = std::chrono::milliseconds(20);
   const Time end = MonotonicClock().now() + kMostDelay;
-  const double rate = rate_after(options, present.law->largest_rate());
+  const double rate = rate_after(options, present.law->max_rate());
   auto streams = ipc::followers_of(present.law->header().stream_id, options.trust);
   if (!beyond_limits(effects_of(present, streams, rate, options.ramp, options.trust))) {
     return options.ramp;
@@ -293,9 +295,9 @@ int command(RateOptions options) {
     if (!holds) throw;
     say(error.what());
   }
-  if (present && !options.release && *options.rate > present->law->largest_rate()) {
+  if (present && !options.release && *options.rate > present->law->max_rate()) {
     throw BadRequest(fmt::format("R is above the largest rate of '{}', {:g}: {:g}", options.law,
-                                 present->law->largest_rate(), *options.rate));
+                                 present->law->max_rate(), *options.rate));
   }
   const bool lowers = holds || (!options.release && present && *options.rate <= present->from.rate);
   if (!lowers && present && options.gentle) options.ramp = gentle_ramp(options, *present);

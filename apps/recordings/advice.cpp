@@ -30,8 +30,8 @@ double catch_up_time(double distance, double deficit, double acceleration, doubl
 
 /// Time in s to return onto a path of constant velocity v, after the curve has followed a stop
 /// segment of duration `stop` for `dry` s. nullopt if the velocity limit is not above v.
-std::optional<double> way_back(double v, double dry, double stop, double max_velocity,
-                               double max_acceleration) {
+std::optional<double> return_time(double v, double dry, double stop, double max_velocity,
+                                  double max_acceleration) {
   if (v == 0 || dry <= 0) return 0.0;
   const double u = std::min(dry / stop, 1.0);
   const double velocity = v * (1 - 3 * u * u + 2 * u * u * u);
@@ -44,12 +44,12 @@ std::optional<double> way_back(double v, double dry, double stop, double max_vel
 }  // namespace
 
 Time depth_needed(Time interval, const SolvedHow& how) noexcept {
-  return saturated_sum(how.freeze_ahead,
+  return saturated_sum(how.settle_ahead,
                        saturated_product(interval, static_cast<std::int64_t>(how.settle) + 1));
 }
 
 Time depth_needed(Time interval, Time length, const SolvedHow& how) noexcept {
-  return std::min(depth_needed(interval, how), saturated_sum(how.freeze_ahead, length));
+  return std::min(depth_needed(interval, how), saturated_sum(how.settle_ahead, length));
 }
 
 Time advised_lead(const Intervals& intervals, Time length, const SolvedHow& how) noexcept {
@@ -57,12 +57,12 @@ Time advised_lead(const Intervals& intervals, Time length, const SolvedHow& how)
   return std::max(kLeastLead, rounded_up_to_ms(saturated_sum(depth, intervals.jitter)));
 }
 
-std::size_t advised_settle(const Intervals& intervals, Time freeze_ahead) noexcept {
+std::size_t advised_settle(const Intervals& intervals, Time settle_ahead) noexcept {
   constexpr std::size_t kFewest = 4;
   constexpr Time kLongestLead = std::chrono::seconds(1);
   std::size_t settle = SolvedHow{}.settle;
   const auto lead = [&] {
-    return advised_lead(intervals, Time::max(), {.settle = settle, .freeze_ahead = freeze_ahead});
+    return advised_lead(intervals, Time::max(), {.settle = settle, .settle_ahead = settle_ahead});
   };
   while (settle > kFewest && lead() > kLongestLead) --settle;
   return settle;
@@ -84,28 +84,28 @@ AdvisedLimits advised_limits(std::span<const DimensionMotion> motion) {
   constexpr double kRounding = 1e-6;  // ms, rounding error of the quotients
   const auto milliseconds =
       std::chrono::milliseconds(std::llround(std::ceil(stop * 1e3 - kRounding)));
-  limits.stop_time = stop == 0 ? kUnmoved : std::max(milliseconds, std::chrono::milliseconds(1));
+  limits.stop_length = stop == 0 ? kUnmoved : std::max(milliseconds, std::chrono::milliseconds(1));
   return limits;
 }
 
-SilenceEffect foresee(Time lead, Time silence, Time interval, Time freeze_ahead,
+SilenceEffect foresee(Time lead, Time silence, Time interval, Time settle_ahead,
                       std::span<const DimensionMotion> motion, const AdvisedLimits& limits) {
   const Time left = std::max(saturated_sum(saturated_sum(lead, -interval), -silence), -Time::max());
   SilenceEffect effect{.lead = lead,
                        .silence = silence,
                        .depth_left = std::max(left, Time::zero()),
-                       .dry = std::max(saturated_sum(freeze_ahead, -left), Time::zero())};
-  effect.comes_to_rest = effect.dry >= limits.stop_time;
+                       .dry = std::max(saturated_sum(settle_ahead, -left), Time::zero())};
+  effect.comes_to_rest = effect.dry >= limits.stop_length;
   for (std::size_t d = 0; d < motion.size(); ++d) {
-    effect.way_back.push_back(way_back(motion[d].peak_velocity, to_seconds(effect.dry),
-                                       to_seconds(limits.stop_time), limits.velocity[d],
-                                       limits.acceleration[d]));
+    effect.return_time.push_back(return_time(motion[d].peak_velocity, to_seconds(effect.dry),
+                                             to_seconds(limits.stop_length), limits.velocity[d],
+                                             limits.acceleration[d]));
   }
   return effect;
 }
 
-Advice advise(const WaypointTable& table, Time freeze_ahead, std::optional<std::size_t> settle,
-              bool goes_on) {
+Advice advise(const WaypointTable& table, Time settle_ahead, std::optional<std::size_t> settle,
+              bool continues) {
   constexpr std::array<Time, 2> kSilences{std::chrono::milliseconds(100),
                                           std::chrono::milliseconds(300)};
   if (table.size() < 3) {
@@ -113,9 +113,9 @@ Advice advise(const WaypointTable& table, Time freeze_ahead, std::optional<std::
         fmt::format("{}: {} rows in order: advice needs at least 3", table.file, table.size()));
   }
   const Intervals intervals = measure_intervals(table.times);
-  const SolvedHow how{.settle = settle.value_or(advised_settle(intervals, freeze_ahead)),
-                      .freeze_ahead = freeze_ahead};
-  const Time length = goes_on ? Time::max() : table.times.back() - table.times.front();
+  const SolvedHow how{.settle = settle.value_or(advised_settle(intervals, settle_ahead)),
+                      .settle_ahead = settle_ahead};
+  const Time length = continues ? Time::max() : table.times.back() - table.times.front();
   Advice advice{.intervals = intervals,
                 .motion = measure_motion(table, intervals),
                 .how = how,
@@ -125,7 +125,7 @@ Advice advise(const WaypointTable& table, Time freeze_ahead, std::optional<std::
   for (const Time lead : {advice.lead, kShortLead}) {
     for (const Time silence : kSilences) {
       advice.silences.push_back(
-          foresee(lead, silence, intervals.median, freeze_ahead, advice.motion, advice.limits));
+          foresee(lead, silence, intervals.median, settle_ahead, advice.motion, advice.limits));
     }
   }
   return advice;

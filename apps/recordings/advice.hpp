@@ -23,7 +23,7 @@ inline constexpr double kLimitFactor = 3;
 /// Options of the solver of a live stream.
 struct SolvedHow {
   std::size_t settle = 8;
-  Time freeze_ahead{5'000'000};
+  Time settle_ahead{5'000'000};
 };
 
 /// The depth (time from now to the newest knot) that gives each knot `settle` newer knots before it
@@ -40,13 +40,13 @@ struct SolvedHow {
                                 const SolvedHow& how) noexcept;
 
 /// The recommended settle lag: 8, or down to 4 if 8 needs a lead of more than 1 s.
-[[nodiscard]] std::size_t advised_settle(const Intervals& intervals, Time freeze_ahead) noexcept;
+[[nodiscard]] std::size_t advised_settle(const Intervals& intervals, Time settle_ahead) noexcept;
 
 /// Limits of each dimension, and a stop time that keeps them.
 struct AdvisedLimits {
   std::vector<double> velocity{};
   std::vector<double> acceleration{};  ///< a stop from the peak velocity takes at most 1 s
-  Time stop_time{};
+  Time stop_length{};
 };
 [[nodiscard]] AdvisedLimits advised_limits(std::span<const DimensionMotion> motion);
 
@@ -59,13 +59,13 @@ struct SilenceEffect {
   bool comes_to_rest = false;  ///< whether the stop segment ends before the next waypoint
   /// Time in s to return onto the path, for each dimension at its peak velocity; nothing if the
   /// limits leave no velocity to catch up.
-  std::vector<std::optional<double>> way_back{};
+  std::vector<std::optional<double>> return_time{};
 };
 
 /// Predicts the effect of a silence in the worst case: it starts just before a waypoint is due. The
 /// return is a minimum-time motion within the limits, while the path continues at the peak
 /// velocity.
-[[nodiscard]] SilenceEffect foresee(Time lead, Time silence, Time interval, Time freeze_ahead,
+[[nodiscard]] SilenceEffect foresee(Time lead, Time silence, Time interval, Time settle_ahead,
                                     std::span<const DimensionMotion> motion,
                                     const AdvisedLimits& limits);
 
@@ -81,9 +81,9 @@ struct Advice {
       silences{};  ///< silences of 100 and 300 ms, with `lead` and kShortLead
 };
 
-/// Recommendations for a table, see measure_motion(). With `goes_on` the stream continues after the
-/// table. Chooses the settle lag if it is not given. Throws InputError for too few rows.
-[[nodiscard]] Advice advise(const WaypointTable& table, Time freeze_ahead,
-                            std::optional<std::size_t> settle, bool goes_on);
+/// Recommendations for a table, see measure_motion(). With `continues` the stream continues after
+/// the table. Chooses the settle lag if it is not given. Throws InputError for too few rows.
+[[nodiscard]] Advice advise(const WaypointTable& table, Time settle_ahead,
+                            std::optional<std::size_t> settle, bool continues);
 
 }  // namespace splinecast::apps

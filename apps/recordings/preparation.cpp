@@ -21,7 +21,7 @@ PreparedRows::PreparedRows(RowReader& rows, std::vector<Dimension> kinds, const 
 }
 
 void PreparedRows::set_median(Time median) noexcept {
-  step_ = std::max(how_.limits.min_interval, std::min(how_.limits.max_interval, median));
+  step_ = std::max(how_.intervals.least, std::min(how_.intervals.most, median));
   // Gaps are measured in time of the recording, before the rate.
   const double recorded = std::min(to_seconds(median) * how_.rate, to_seconds(kLatestTime));
   gap_ = gap_length(how_.gap, from_seconds(recorded));
@@ -151,7 +151,7 @@ bool PreparedRows::note_gap(const Row& row, Time recorded) {
 std::optional<PreparedRows::Objection> PreparedRows::time_refusal(const Row& row,
                                                                   bool is_split) const {
   if (!state_.has_last) return std::nullopt;
-  auto status = ipc::judge_interval(row.time - state_.last, how_.limits);
+  auto status = ipc::judge_interval(row.time - state_.last, how_.intervals);
   if (is_split && status == AppendStatus::too_far_apart) status = AppendStatus::accepted;
   if (!is_time_in_range(moved(row.time))) status = AppendStatus::too_far_apart;
   if (status == AppendStatus::accepted) return std::nullopt;

@@ -11,8 +11,8 @@
 #include "apps/recordings/late_rows.hpp"
 #include "apps/recordings/refused_rows.hpp"
 #include "apps/tables/rows.hpp"
+#include "ipc/ring/item.hpp"
 #include "splinecast/dimension_kind.hpp"
-#include "splinecast/options.hpp"
 
 /// Preparation of the rows of a recording, before they are sent.
 namespace splinecast::apps {
@@ -22,7 +22,7 @@ struct Preparation {
   std::optional<Time> from{};      ///< time after the first row at which to begin
   std::optional<Time> duration{};  ///< length of the part, in time of the recording
   double rate = 1;  ///< divides times, multiplies velocities, and accelerations by its square
-  IngestLimits limits{};
+  ipc::IntervalRange intervals{};
   LatePolicy late = LatePolicy::refuse;
   GapOptions gap{.policy = GapPolicy::bridge};
 };

@@ -14,10 +14,10 @@ namespace {
 
 /// Warns if a lead is less than K needs, and reports the effect of a silence of 100 ms.
 void judge_lead(Time lead, Time needed, Time interval, const SolvedHow& how,
-                const ReplayOptions& options, Time stop_time) {
+                const ReplayOptions& options, Time stop_length) {
   if (lead >= needed) return;
   const SilenceEffect effect = foresee(lead, std::chrono::milliseconds(100), interval,
-                                       how.freeze_ahead, {}, {.stop_time = stop_time});
+                                       how.settle_ahead, {}, {.stop_length = stop_length});
   say(fmt::format("'{}': the lead of {} is less than the {} that K = {} needs; a silence of {}: {}",
                   options.stream, in_milliseconds(lead), in_milliseconds(needed), how.settle,
                   in_milliseconds(effect.silence), in_words(effect)));
@@ -29,13 +29,14 @@ Time choose_lead(const Survey& survey, const ReplayOptions& options,
                  const ipc::RegionHeader& board) {
   const auto live = ipc::live_options(board);
   if (!live || !options.rate || survey.rows < 2) return options.lead.value_or(kLeastLead);
-  const SolvedHow how{.settle = board.settle, .freeze_ahead = live->freeze_ahead};
+  const SolvedHow how{.settle = board.settle, .settle_ahead = live->settle_ahead};
   const Intervals& intervals = survey.intervals;
   const Time length = options.loops > 1 ? Time::max() : survey.last - survey.first;
   if (options.lead) {
     const Time needed = depth_needed(intervals.median, length, how);
     if (!options.quiet) {
-      judge_lead(*options.lead, needed, intervals.median, how, options, Time(board.stop_time));
+      judge_lead(*options.lead, needed, intervals.median, how, options,
+                 ipc::window_options(board).stop_length);
     }
     return *options.lead;
   }

@@ -163,7 +163,7 @@ void RowSender::note_lateness(Time lateness, Time moved_by) {
 /// Appends a waypoint; the first one after a gap as a replacement from where the motion begins
 /// again, unless it is too late for that.
 AppendStatus RowSender::append(const Waypoint& waypoint) {
-  if (is_behind()) return AppendStatus::full;
+  if (is_late()) return AppendStatus::full;
   if (entry_begin_) {
     const AppendStatus status = replace(*entry_begin_, {&waypoint, 1});
     if (status == AppendStatus::accepted) rows_.note_replacement(*entry_begin_);
@@ -173,17 +173,17 @@ AppendStatus RowSender::append(const Waypoint& waypoint) {
 }
 
 AppendStatus RowSender::replace(Time t, std::span<const Waypoint> waypoints) {
-  return is_behind() ? AppendStatus::full : producer_.replace_from(t, waypoints);
+  return is_late() ? AppendStatus::full : producer_.replace_from(t, waypoints);
 }
 
 /// Whether kRefusalsKept earlier items are undecided: the board could overwrite a refusal before it
 /// is read. A ring of more than kRefusalsKept items is not throttled.
-bool RowSender::is_behind() const {
+bool RowSender::is_late() const {
   rows_.look();
-  const bool is_behind =
+  const bool is_late =
       rows_.undecided() >= ipc::kRefusalsKept && options_.ring.capacity <= ipc::kRefusalsKept;
-  if (is_behind) rows_.require_readable();
-  return is_behind;
+  if (is_late) rows_.require_readable();
+  return is_late;
 }
 
 bool RowSender::await(const std::function<bool()>& wait) {

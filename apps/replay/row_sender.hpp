@@ -52,7 +52,7 @@ class RowSender {
   void note_lateness(Time lateness, Time moved_by);
   AppendStatus append(const Waypoint& waypoint);
   AppendStatus replace(Time t, std::span<const Waypoint> waypoints);
-  [[nodiscard]] bool is_behind() const;
+  [[nodiscard]] bool is_late() const;
   bool await(const std::function<bool()>& wait);
 
   const ReplayOptions& options_;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/cli/option_rows.hpp"
 #include "apps/cli/options.hpp"
 #include "apps/cli/verb.hpp"
 #include "apps/output/stream.hpp"
@@ -216,16 +217,6 @@ void add_playback_options(Command& verb, ReplayOptions& options) {
       "c2 is halt)");
 }
 
-void add_interval(Command& verb, const std::string& name, Time& value, const std::string& help) {
-  verb.option(
-          name,
-          [&value, name](const std::string& text) {
-            value = time_within(name, text, TimeUnit::seconds);
-          },
-          help)
-      .type("SECONDS");
-}
-
 /// Throws InputError if all loops together take longer than a time can represent.
 void require_loops(const Recording& recording, std::size_t loops) {
   if (loops == 1) return;
@@ -243,7 +234,8 @@ Preparation preparation_of(const ReplayOptions& options) {
   return {.from = options.from,
           .duration = options.duration,
           .rate = options.rate.value_or(1.0),
-          .limits = options.ring.limits,
+          .intervals = {.least = options.ring.limits.min_interval,
+                        .most = options.ring.limits.max_interval},
           .late = options.late,
           .gap = options.gap};
 }
@@ -302,21 +294,18 @@ void add_row_policies(Command& verb, ReplayOptions& options) {
 }
 
 void add_ring_options(Command& verb, ReplayOptions& options) {
-  add_count(verb, "--capacity", options.ring.capacity,
-            "Capacity of the ring in waypoints, 2 to 16777216, rounded up to a power of two "
-            "(default 1024)");
+  add_row(verb, ipc::stream_option<&ipc::capacity_of>(), options.ring.capacity, "N");
   add_seconds(verb, "--wait", options.wait, "Time in s to wait for a solver, from 0 (default 10)");
-  add_interval(verb, "--min-interval", options.ring.limits.min_interval,
-               "Minimum time between waypoints in s, above 0 (default 1e-6)");
-  add_interval(verb, "--max-interval", options.ring.limits.max_interval,
-               "Maximum time between waypoints in s, above 0 (default 3600)");
+  IngestLimits& allowed = options.ring.limits;
+  add_row(verb, ipc::stream_option<&ipc::min_interval_of>(), allowed.min_interval, "SECONDS");
+  add_row(verb, ipc::stream_option<&ipc::max_interval_of>(), allowed.max_interval, "SECONDS");
 }
 
 /// Throws UsageError for options that exclude one another.
 void require_agreeing(const ReplayOptions& options) {
   const SolverOptions& curve = options.solver;
-  const bool shapes = curve.method != nullptr || curve.lambda || curve.time_scale || curve.settle ||
-                      curve.tail || curve.force_lag;
+  bool shapes = curve.method != nullptr;
+  ipc::for_each_option([&](const auto& row) { shapes = shapes || is_set(row, curve); });
   if (shapes && !options.embedded) {
     throw UsageError("--method, --lambda, --time-scale, --settle, --tail, --force-lag",
                      "go with --embedded only; without it they are options of 'solve'");

@@ -241,8 +241,9 @@ class Soak {
       const ipc::StreamInfo info = ipc::inspect(stream);
       const ipc::Summary& summary = info.summary;
       appended += info.appended;
-      const ipc::Word told = summary.knots + summary.refused + summary.withdrawn + summary.controls;
-      if (info.appended != told || summary.consumed != told) ++lossy;
+      const ipc::Word accounted =
+          summary.knots + summary.refused + summary.withdrawn + summary.controls;
+      if (info.appended != accounted || summary.consumed != accounted) ++lossy;
       if (!summary.finished) ++unfinished;
     }
     found["appended"] = appended;

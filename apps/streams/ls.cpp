@@ -52,8 +52,8 @@ std::string state_in_words(const ordered_json& entry) {
 
 std::string row(const ordered_json& entry) {
   const auto alive = [&](const char* role) {
-    const bool stands = entry.contains(role) && entry[role].is_object();
-    return !stands ? "-" : entry[role]["alive"].get<bool>() ? "alive" : "gone";
+    const bool exists = entry.contains(role) && entry[role].is_object();
+    return !exists ? "-" : entry[role]["alive"].get<bool>() ? "alive" : "gone";
   };
   const bool solved = entry.contains("solver") && entry["solver"].is_object();
   return fmt::format("{:<24} {:>4} {:<9} {:<9} {:<7} {:>10}  {}\n",

@@ -1,4 +1,5 @@
 #include "apps/streams/report.hpp"
+#include "apps/output/options.hpp"
 
 #include <fmt/format.h>
 
@@ -46,9 +47,8 @@ ordered_json stream_json(const ipc::RegionHeader& header) {
       {"kinds", kinds_json(header)},
       {"clock", clock_name(header)},
       {"start", to_string(ipc::start_condition(header))},
-      {"min_interval_ns", header.min_interval},
-      {"max_interval_ns", header.max_interval},
   };
+  json.update(intervals_to_json(header));
   if (header.is_law != 0) {
     json["time_law"] = {{"origin_ns", header.law_origin}, {"largest_rate", header.largest_rate}};
   }
@@ -169,25 +169,19 @@ ordered_json refused_json(const ipc::Summary& summary) {
 /// The solver of the stream, and its options.
 ordered_json solving_json(const ipc::StreamInfo& info) {
   const ipc::RegionHeader& header = *info.spline;
-  return {
-      {"alive", info.solver_alive},
-      {"pid", header.owner_pid},
-      {"epoch", header.epoch},
-      {"method", ipc::window_options(header).interpolant.method->name},
-      {"lambda", header.lambda},
-      {"time_scale", header.time_scale},
-      {"settle", header.settle},
-      {"tail", to_string(static_cast<Tail>(header.tail))},
-      {"stop_time_ns", header.stop_time},
-      {"board_capacity", header.capacity},
-      {"region_bytes", header.region_bytes},
-      {"max_acceleration", ipc::motion_limits(header).acceleration},
-      {"limits", limits_json(header)},
-      {"shown", shown_json(info)},
-      {"freeze_ahead_ns", header.freeze_ahead},
-      {"history_ns", header.history},
-      {"min_entry_ns", header.min_entry},
-  };
+  ordered_json found{{"alive", info.solver_alive},
+                     {"pid", header.owner_pid},
+                     {"epoch", header.epoch},
+                     {"method", ipc::window_options(header).interpolant.method->name}};
+  found.update(curve_to_json(header));
+  found.erase("capacity");
+  found.erase("beyond");  // among the limits
+  found.update(ordered_json{{"board_capacity", header.capacity},
+                            {"region_bytes", header.region_bytes},
+                            {"max_acceleration", ipc::motion_limits(header).acceleration},
+                            {"limits", limits_json(header)},
+                            {"shown", shown_json(info)}});
+  return found;
 }
 
 ordered_json solver_json(const ipc::StreamInfo& info) {

@@ -78,7 +78,7 @@ std::string depth_warning(const ipc::StreamInfo& info, const Trust& trust) {
   if (table.size() < 2) return {};
   const Time interval = measure_intervals(table.times).median;
   const Time needed =
-      depth_needed(interval, {.settle = info.spline->settle, .freeze_ahead = live->freeze_ahead});
+      depth_needed(interval, {.settle = info.spline->settle, .settle_ahead = live->settle_ahead});
   // The depth is least just before a waypoint is consumed: one interval less than `needed`. Another
   // half interval is allowed for jitter.
   const Time usual = needed - interval;

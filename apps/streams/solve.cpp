@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/cli/option_rows.hpp"
 #include "apps/cli/options.hpp"
 #include "apps/cli/verb.hpp"
 #include "apps/limits/file.hpp"
@@ -45,15 +46,15 @@ class Announcer {
     for (NamedLimits& joint : joints_) joint.name = ipc::header_name(joint.name);
   }
 
-  void tell(ipc::SweepNews news, const std::string& stream, const Solver* solver,
-            std::string_view why) {
+  void notify(ipc::SweepNews news, const std::string& stream, const Solver* solver,
+              std::string_view why) {
     using enum ipc::SweepNews;
     const bool is_lost = news == no_descriptors || news == postponed || news == given_up;
     if (is_lost) lost_.insert(stream);
     if (news == solving) lost_.erase(stream);
     if (quiet_ && !is_lost && news != commander) return;
     say(fmt::format("'{}': {}", stream, text(news, solver, why)));
-    if (news == solving && limits_->any()) tell_limits(stream, *solver);
+    if (news == solving && limits_->any()) report_limits(stream, *solver);
     if (news == solving && !many_ && !solver->is_memory_locked()) {
       say(fmt::format("'{}': pages are not locked into memory (RLIMIT_MEMLOCK)", stream));
     }
@@ -116,7 +117,7 @@ class Announcer {
   }
 
   /// Reports limits that match no dimension, and dimensions without a limit.
-  void tell_limits(const std::string& stream, const Solver& solver) const {
+  void report_limits(const std::string& stream, const Solver& solver) const {
     const ipc::RegionHeader& header = ipc::Internals::board(solver);
     const std::vector<std::string> names = ipc::dimension_names(header);
     const LimitGaps gaps =
@@ -136,20 +137,20 @@ int solve_one(const SolveOptions& options) {
   const MonotonicClock clock;
   Announcer announcer(options, false);
   Solver solver(options.wanted.front(), options.solver);
-  const ipc::TellNews tell = [&announcer](const auto&... news) { announcer.tell(news...); };
-  tell(ipc::SweepNews::waiting, solver.stream(), &solver, {});
+  const ipc::NotifyNews notify = [&announcer](const auto&... news) { announcer.notify(news...); };
+  notify(ipc::SweepNews::waiting, solver.stream(), &solver, {});
   bool was_attached = false;
   ipc::ReportedNews reported;
   ipc::ReportedNews::Scratch scratch;
   while (!stop_requested()) {
     if (!solver.attached()) {
-      if (was_attached) tell(ipc::SweepNews::waiting, solver.stream(), &solver, {});
+      if (was_attached) notify(ipc::SweepNews::waiting, solver.stream(), &solver, {});
       was_attached = solver.attach(clock);
       reported = {};
-      if (was_attached) tell(ipc::SweepNews::solving, solver.stream(), &solver, {});
+      if (was_attached) notify(ipc::SweepNews::solving, solver.stream(), &solver, {});
     }
     const StepResult result = solver.step(clock);
-    reported.report(solver, tell, scratch);
+    reported.report(solver, notify, scratch);
     if (result.consumed == 0 && !result.missed) solver.wait(kLongestWait);
   }
   return kOk;
@@ -162,7 +163,7 @@ int solve_many(const SolveOptions& options) {
   Announcer announcer(options, true);
   ipc::StreamSweep sweep(
       options.wanted, options.solver,
-      [&announcer](const auto&... news) { announcer.tell(news...); }, options.sweep);
+      [&announcer](const auto&... news) { announcer.notify(news...); }, options.sweep);
   Time due = clock.now();
   while (!stop_requested()) {
     if (sweep.sweep(clock)) continue;
@@ -183,24 +184,10 @@ namespace {
 
 /// Adds the options of live streams.
 void add_live_options(Command& verb, SolverOptions& options) {
-  verb.option(
-          "--freeze-ahead",
-          [&options](const std::string& text) {
-            options.freeze_ahead = time_within("--freeze-ahead", text, TimeUnit::milliseconds);
-          },
-          "Time ahead of now, in ms, up to which the curve is settled: above 0, at most 60000 "
-          "(default 5)")
-      .type("MS");
-  add_seconds(verb, "--history", options.history,
-              "Length of the past curve that is kept, in s, 0 to 86400 (default 1); no waypoint is "
-              "consumed that would overwrite it");
-  verb.option(
-          "--largest-rate",
-          [&options](const std::string& text) {
-            options.largest_rate = number_within("--largest-rate", text, {0, ipc::kLargestRate});
-          },
-          "Largest rate of the time laws that are made here, above 0, at most 100 (default 1)")
-      .type("R");
+  add_curve_option<&SolverOptions::freeze_ahead>(verb, options.freeze_ahead, "MS",
+                                                 TimeUnit::milliseconds);
+  add_curve_option<&SolverOptions::history>(verb, options.history, "SECONDS");
+  add_curve_option<&SolverOptions::largest_rate>(verb, options.largest_rate, "R");
 }
 
 /// Adds the option of a process that solves several streams.
@@ -233,18 +220,14 @@ void add_solve(Command& verb, Action& action) {
           "streams that appear later")
       .required();
   add_solver_curve(verb, options->solver);
-  add_seconds(verb, "--stop-time", options->solver.stop_time,
-              "Duration in s of the stop segment, in which a starved stream comes to rest, above 0 "
-              "(default 0.25); longer if a limit of acceleration or jerk requires it");
-  add_count(verb, "--capacity", options->solver.capacity,
-            "Number of segments on the board, 2 (K + 6) + 2 to 4194304, K being the settle lag; "
-            "rounded up to a power of two (default 4096)");
+  add_curve_option<&SolverOptions::stop_time>(verb, options->solver.stop_time, "SECONDS");
+  add_curve_option<&SolverOptions::capacity>(verb, options->solver.capacity, "N");
   add_live_options(verb, options->solver);
   add_limit_options(
       verb, options->limits,
       ". Applies to entries and stop segments, not to the spline through the waypoints: "
       "see --beyond");
-  add_beyond(verb, options->solver.beyond);
+  add_curve_option<&SolverOptions::beyond>(verb, options->solver.beyond, "report|refuse|enter");
   verb.clear("--no-wake", options->solver.wake,
              "Do not wake waiting readers: for hosts where every reader polls");
   add_sweep(verb, *options);

@@ -109,7 +109,7 @@ void ColumnRoles::find_values(const TableOptions& options, LineReader& lines,
   roles_.accelerations = derivative_columns("a", all);
   if (!options.columns.empty()) return;
   require_no_unused_derivative();
-  if (!options.quiet) tell_roles();
+  if (!options.quiet) report_roles();
 }
 
 void ColumnRoles::add_position(std::size_t c) {
@@ -261,7 +261,7 @@ void ColumnRoles::require_no_unused_derivative() const {
   }
 }
 
-void ColumnRoles::tell_roles() const {
+void ColumnRoles::report_roles() const {
   const bool is_clear =
       left_out_.empty() && std::ranges::none_of(roles_.positions, [&](std::size_t c) {
         return is_ambiguous(format_.names[c]);

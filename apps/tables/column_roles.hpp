@@ -56,7 +56,7 @@ class ColumnRoles {
   void require_usable(std::size_t c) const;
   void require_no_unused_derivative() const;
   void add_position(std::size_t c);
-  void tell_roles() const;
+  void report_roles() const;
   [[nodiscard]] std::string names_of(const Columns& columns) const;
   [[nodiscard]] std::string all_names() const;
 

@@ -35,7 +35,7 @@ constexpr Time kPatience{10'000'000'000};
 
 /// A time half an interval before waypoint i. The curve is the stop segment there until waypoint i
 /// is appended.
-Time asked_for(std::uint64_t i) { return time_of(i) - kTripInterval / 2; }
+Time requested_time(std::uint64_t i) { return time_of(i) - kTripInterval / 2; }
 
 /// Appends the waypoints of the round trips to a stream of this process.
 class Appender {
@@ -59,7 +59,7 @@ class Appender {
 /// Samples until the curve reaches waypoint i; false if a stop is requested.
 bool await_waypoint(Reader& reader, State& state, std::uint64_t i) {
   for (;;) {
-    const SampleStatus status = reader.sample(asked_for(i), state);
+    const SampleStatus status = reader.sample(requested_time(i), state);
     if (status == SampleStatus::provisional || status == SampleStatus::settled) {
       benchmark::DoNotOptimize(state.values().data());
       return true;

@@ -65,7 +65,7 @@ double cross_validation_score(const Waypoints& waypoints, double lambda) {
     throw std::invalid_argument("cross-validation needs 3 waypoints; there are " +
                                 std::to_string(waypoints.size()));
   }
-  require_parameters({.method = find_method("smoothing"), .lambda = lambda, .time_scale = 1});
+  require_parameters({.method = find_method("smoothing"), .lambda = lambda});
   const core::KnotRing knots = core::measure_knots(waypoints, false);
   return score_of(core::SmoothingMesh(knots), lambda);
 }

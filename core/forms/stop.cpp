@@ -72,14 +72,14 @@ double stop_acceleration(double velocity, double acceleration, double seconds) n
 }
 
 SPLINECAST_VECTOR_CLONES
-void build_stop(Time from, Time stop_time, std::span<const double> position,
+void build_stop(Time from, Time stop_length, std::span<const double> position,
                 std::span<const double> velocity, std::span<const double> acceleration,
                 Segment& out) noexcept {
   out.left = from;
-  out.right = from + stop_time;
+  out.right = from + stop_length;
   out.order = kMaxOrder;
   out.kind = SegmentKind::stop;
-  write_stop(position, velocity, acceleration, to_seconds(stop_time), out.coefficients.data());
+  write_stop(position, velocity, acceleration, to_seconds(stop_length), out.coefficients.data());
 }
 
 namespace {
@@ -219,10 +219,10 @@ Time longest_within_bound(const MotionLimits& limits, const Instant& from, std::
 
 Time stop_time_within(const StopRules& rules, const Instant& from) noexcept {
   const MotionLimits& limits = rules.limits;
-  if (limits.acceleration.empty() && limits.jerk.empty()) return rules.stop_time;
+  if (limits.acceleration.empty() && limits.jerk.empty()) return rules.stop_length;
   const Time estimate = std::max(least_stop_time(limits, rules.kinds, from), Time(1));
   const Time least = lengthened(rules, from, estimate);
-  Time length = std::max(rules.stop_time, least);
+  Time length = std::max(rules.stop_length, least);
   // The rotation of a longer stop may exceed its limits: it has turned farther from the line.
   if (length > least && !rotations_keep(rules, from, length)) length = least;
   if (limits.lower.empty() && limits.upper.empty()) return length;

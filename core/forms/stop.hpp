@@ -32,9 +32,9 @@ inline constexpr Time kLeastStopTime{1'000'000};
 [[nodiscard]] double stop_acceleration(double velocity, double acceleration,
                                        double seconds) noexcept;
 
-/// Writes the stop that begins at `from` and takes `stop_time` > 0. Sets everything except
+/// Writes the stop that begins at `from` and takes `stop_length` > 0. Sets everything except
 /// `acceleration_step`.
-void build_stop(Time from, Time stop_time, std::span<const double> position,
+void build_stop(Time from, Time stop_length, std::span<const double> position,
                 std::span<const double> velocity, std::span<const double> acceleration,
                 Segment& out) noexcept;
 
@@ -42,7 +42,7 @@ void build_stop(Time from, Time stop_time, std::span<const double> position,
 struct StopRules {
   const MotionLimits& limits;  ///< lists of one value per dimension, or empty
   const DimensionKinds& kinds;
-  Time stop_time;  ///< > 0: the length of a stop, unless limits or bounds change it
+  Time stop_length;  ///< > 0: the length of a stop, unless limits or bounds change it
 };
 
 /// Replaces the acceleration of each quaternion by its part against the velocity: that with which

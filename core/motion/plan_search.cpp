@@ -43,7 +43,7 @@ EntryRules PlanSearch::rules(const Plan& plan, const EntryBegin& from) const noe
   return {.limits = &plan.window().limits_at_largest_rate(),
           .path_limits = &plan.window().options().limits,
           .shown = from.shown,
-          .least = blends ? std::max(options_.min_entry, until - begin) : options_.min_entry,
+          .least = blends ? std::max(options_.least_entry, until - begin) : options_.least_entry,
           .reach = &reach_,
           .falls_back = !options_.keeps_limits,
           .checks_stop = options_.checks_stops};
@@ -127,7 +127,7 @@ std::size_t PlanSearch::first_open(const Plan& plan, Time settled) const noexcep
                 frozen - std::min<std::size_t>(frozen, 1), window.oldest_segment()});
   if (plan.is_on_target()) return first;
   const Time begin = plan.has_origin() ? std::max(settled, plan.origin().time) : settled;
-  const Time earliest = std::max(begin + options_.min_entry, plan.blend_until());
+  const Time earliest = std::max(begin + options_.least_entry, plan.blend_until());
   while (first < window.knots() && window.time(first) < earliest) ++first;
   return first;
 }

@@ -21,7 +21,7 @@ namespace splinecast::core {
 /// How a published curve returns to its target.
 struct EntryOptions {
   bool is_live = false;       ///< false: an entry waits until K newer waypoints are known
-  Time min_entry{};           ///< length of the shortest entry
+  Time least_entry{};         ///< length of the shortest entry
   Time notice{};              ///< a live stream's start is decided this long before it settles
   bool keeps_limits = false;  ///< Beyond::enter: the curve leaves its target where that exceeds one
   bool checks_stops = false;  ///< the stop after a waypoint counts, too: not Beyond::report

@@ -47,13 +47,13 @@ double ShownLimits::quantile(std::size_t count) noexcept {
   return core::quantile(std::span(values_).first(count), 0.95);
 }
 
-void ShownLimits::look(Time stop_time) noexcept {
+void ShownLimits::look(Time stop_length) noexcept {
   if (has_looked_) return;
   has_looked_ = true;
   std::size_t kept = count_ - first_;
   while (kept > 0 && times_[place(0)] - times_[place(kept - 1)] > kSpan) --kept;
   const std::size_t chords = kept - std::min<std::size_t>(kept, 1);
-  const double stop = to_seconds(stop_time);
+  const double stop = to_seconds(stop_length);
   const auto interval = [&](std::size_t i) {
     return to_seconds(times_[place(i)] - times_[place(i + 1)]);
   };

@@ -42,9 +42,9 @@ class ShownLimits {
   /// Drops everything.
   void forget_all() noexcept;
 
-  /// Finds the limits, if a waypoint has been taken since the last call. `stop_time` is the length
-  /// of a stop, the same in all calls. O(kSpan/kStep·D).
-  void look(Time stop_time) noexcept;
+  /// Finds the limits, if a waypoint has been taken since the last call. `stop_length` is the
+  /// length of a stop, the same in all calls. O(kSpan/kStep·D).
+  void look(Time stop_length) noexcept;
 
   /// The limits that the last `look` found.
   [[nodiscard]] const MotionLimits& limits() const noexcept { return limits_; }

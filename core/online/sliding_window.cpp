@@ -23,7 +23,8 @@ void require_lag(const WindowOptions& options) {
                                 ", not " + std::to_string(options.settle));
   }
   const double shortest = smoothing_lag(0, 1);
-  if (method.smooths() && !options.force_lag && static_cast<double>(options.settle) < shortest) {
+  if (method.smooths() && !options.accepts_short_lag &&
+      static_cast<double>(options.settle) < shortest) {
     throw std::invalid_argument("settle lag " + std::to_string(options.settle) +
                                 " is too short for smoothing: at least " +
                                 std::to_string(static_cast<int>(shortest)) + " is needed");
@@ -50,13 +51,13 @@ WindowOptions checked(WindowOptions options, std::size_t dimensions) {
   }
   require_streaming(options);
   require_limits(options.limits, dimensions);
-  if (options.stop_time <= Time::zero()) {
+  if (options.stop_length <= Time::zero()) {
     throw std::invalid_argument("stop time must be positive, not " +
-                                std::to_string(options.stop_time.count()) + " ns");
+                                std::to_string(options.stop_length.count()) + " ns");
   }
-  if (!(options.largest_rate > 0)) {
+  if (!(options.max_rate > 0)) {
     throw std::invalid_argument("largest rate must be above 0, not " +
-                                std::to_string(options.largest_rate));
+                                std::to_string(options.max_rate));
   }
   require_values(options.start, dimensions);
   return options;
@@ -77,7 +78,7 @@ WindowOptions with_kinds(WindowOptions options, const DimensionKinds& kinds) {
 
 SlidingWindow::SlidingWindow(std::size_t dimensions, WindowOptions options)
     : options_(checked(std::move(options), dimensions)),
-      limits_at_largest_rate_(limits_at_rate(options_.limits, options_.largest_rate)),
+      limits_at_largest_rate_(limits_at_rate(options_.limits, options_.max_rate)),
       knots_(dimensions, knots_to_restore() + 1, *options_.interpolant.method,
              options_.start.kind == ConditionKind::halt),
       solver_(make_knot_solver(options_.interpolant, options_.start, dimensions, Use::online)),
@@ -120,7 +121,7 @@ bool SlidingWindow::takes(const Waypoint& waypoint) const noexcept {
 bool SlidingWindow::lag_suffices(Time time) const noexcept {
   const std::size_t lag = options_.settle;
   const bool smooths = options_.interpolant.method->smooths();
-  if (!smooths || options_.force_lag || knots() < lag) return true;
+  if (!smooths || options_.accepts_short_lag || knots() < lag) return true;
   const double ahead = to_seconds(time - knots_.row(knots() - lag).time);
   return static_cast<double>(lag) >=
          smoothing_lag(options_.interpolant.lambda, ahead / static_cast<double>(lag));
@@ -225,10 +226,10 @@ Time SlidingWindow::write_stop(std::span<double> acceleration) const noexcept {
   if (!kinds().quaternions().empty() && !options_.interpolant.method->needs_acceleration()) {
     align_rotations(kinds(), knots_.values(knots_.newest(), KnotRing::kVelocity), acceleration);
   }
-  return stop_time(acceleration);
+  return stop_length(acceleration);
 }
 
-Time SlidingWindow::stop_time(std::span<const double> acceleration) const noexcept {
+Time SlidingWindow::stop_length(std::span<const double> acceleration) const noexcept {
   const std::size_t newest = knots_.newest();
   return stop_time_within(stop_rules(), {.time = knots_.row(newest).time,
                                          .position = knots_.position(newest),

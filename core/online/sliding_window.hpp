@@ -35,12 +35,12 @@ struct WindowOptions {
   Tail tail = Tail::bessel;  ///< condition at the newest knot while the stream continues; fixed for
                              ///< `hermite`, `quintic` and `smoothing`
   Condition start{.kind = ConditionKind::own, .value = {}};  ///< condition at knot 0
-  Time stop_time{250'000'000};     ///< length of the stop segment, > 0: see StopRules
+  Time stop_length{250'000'000};   ///< length of the stop segment, > 0: see StopRules
   MotionLimits limits{};           ///< given limits, for the rate 1
   DimensionKinds kinds{};          ///< of the dimensions, for the limits of rotations
-  double largest_rate = 1;         ///< of the time law that the stream follows: above 0
+  double max_rate = 1;             ///< of the time law that the stream follows: above 0
   bool held_before_start = false;  ///< a hold precedes knot 0, as on a live stream
-  bool force_lag = false;          ///< accept a lag that is too short for λ
+  bool accepts_short_lag = false;  ///< accept a lag that is too short for λ
 };
 
 /// These options for dimensions of these kinds. May allocate.
@@ -95,7 +95,7 @@ class SlidingWindow {
   [[nodiscard]] Time write_stop(std::span<double> acceleration) const noexcept;
 
   /// The length of the stop segment if it begins with this acceleration.
-  [[nodiscard]] Time stop_time(std::span<const double> acceleration) const noexcept;
+  [[nodiscard]] Time stop_length(std::span<const double> acceleration) const noexcept;
 
   /// The limits of stops and entries: the given ones, divided so that the motion keeps them also at
   /// the largest rate of the time law.
@@ -106,7 +106,7 @@ class SlidingWindow {
 
   /// What decides the length of a stop.
   [[nodiscard]] StopRules stop_rules() const noexcept {
-    return {limits_at_largest_rate_, kinds(), options_.stop_time};
+    return {limits_at_largest_rate_, kinds(), options_.stop_length};
   }
 
   /// Writes the acceleration at knot i, which must still be in the window: that at the start of the
@@ -123,7 +123,7 @@ class SlidingWindow {
 
   /// Whether the settle lag is long enough for λ (see smoothing_lag) at the knots that a waypoint
   /// at `time` would settle. Uses the mean interval over the lag. Always true for methods other
-  /// than `smoothing`, and with `force_lag`. O(1).
+  /// than `smoothing`, and with `accepts_short_lag`. O(1).
   [[nodiscard]] bool lag_suffices(Time time) const noexcept;
 
   /// Appends a waypoint: its forward rows and K backward rows for all dimensions at once, O(K·D)

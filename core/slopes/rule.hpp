@@ -18,9 +18,9 @@ inline constexpr int kMaxReach = 4;
 /// it.
 class Stencil {
  public:
-  explicit Stencil(double time_scale) : time_scale_(time_scale) {}
+  explicit Stencil(double scale) : scale_(scale) {}
 
-  /// Length in seconds and chord slope of interval k, for −`behind` ≤ k < `ahead` of the rule.
+  /// Length in seconds and chord slope of interval k, for −`before` ≤ k < `ahead` of the rule.
   [[nodiscard]] double h(int k) const noexcept { return h_[index(k)]; }
   [[nodiscard]] double m(int k) const noexcept { return m_[index(k)]; }
   /// Rounding error of the chord slope of interval k, to a factor of about 3: ε·|x|/h, with the
@@ -33,7 +33,7 @@ class Stencil {
   }
 
   /// Seconds that count as much as one unit of position.
-  [[nodiscard]] double time_scale() const noexcept { return time_scale_; }
+  [[nodiscard]] double scale() const noexcept { return scale_; }
 
  private:
   static constexpr std::size_t kIntervals = std::size_t{2} * kMaxReach;
@@ -41,7 +41,7 @@ class Stencil {
     return static_cast<std::size_t>(std::ptrdiff_t{k} + kMaxReach);
   }
 
-  double time_scale_;
+  double scale_;
   std::array<double, kIntervals> h_{};
   std::array<double, kIntervals> m_{};
   std::array<double, kIntervals> rounding_{};
@@ -69,7 +69,7 @@ struct EndStencil {
 struct SlopeRule {
   std::string_view name;
   std::uint64_t number;  ///< identifies the rule in shared memory; never reused
-  int behind;            ///< knots it uses before the knot, 1 … kMaxReach
+  int before;            ///< knots it uses before the knot, 1 … kMaxReach
   int ahead;             ///< knots it uses after the knot, 1 … kMaxReach: its settle lag
   double (*slope)(const Stencil&) noexcept;
 

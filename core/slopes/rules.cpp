@@ -80,7 +80,7 @@ double pchip_end(const EndStencil& s) noexcept {
 /// (math 12).
 double rounded(const Stencil& s) noexcept {
   const auto length_per_h = [&s](int k) {
-    return std::sqrt(1 / (s.time_scale() * s.time_scale()) + s.m(k) * s.m(k));
+    return std::sqrt(1 / (s.scale() * s.scale()) + s.m(k) * s.m(k));
   };
   const double before = length_per_h(-1);
   const double after = length_per_h(0);
@@ -90,7 +90,7 @@ double rounded(const Stencil& s) noexcept {
 constexpr std::array kRules{
     SlopeRule{.name = "bessel",
               .number = 16,
-              .behind = 1,
+              .before = 1,
               .ahead = 1,
               .slope = bessel,
               .end_slope = bessel_end,
@@ -99,7 +99,7 @@ constexpr std::array kRules{
     SlopeRule{
         .name = "akima",
         .number = 17,
-        .behind = 2,
+        .before = 2,
         .ahead = 2,
         .slope = akima,
         .end_slope = nullptr,
@@ -108,7 +108,7 @@ constexpr std::array kRules{
     SlopeRule{
         .name = "makima",
         .number = 18,
-        .behind = 2,
+        .before = 2,
         .ahead = 2,
         .slope = makima,
         .end_slope = nullptr,
@@ -117,7 +117,7 @@ constexpr std::array kRules{
     SlopeRule{
         .name = "pchip",
         .number = 19,
-        .behind = 1,
+        .before = 1,
         .ahead = 1,
         .slope = pchip,
         .end_slope = pchip_end,
@@ -125,7 +125,7 @@ constexpr std::array kRules{
         .laws = {.continuity = 1, .degree = 1, .order_of_convergence = 3, .is_linear = false}},
     SlopeRule{.name = "rounded",
               .number = 20,
-              .behind = 1,
+              .before = 1,
               .ahead = 1,
               .slope = rounded,
               .end_slope = nullptr,

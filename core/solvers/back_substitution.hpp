@@ -18,9 +18,9 @@ template <typename Lane>
 
 /// The rows of a ring from the one before the newest down to a last one: at most two contiguous
 /// blocks of memory.
-class RowsBehind {
+class OlderRows {
  public:
-  RowsBehind(KnotRing& knots, std::size_t last) noexcept
+  OlderRows(KnotRing& knots, std::size_t last) noexcept
       : gamma_(knots.array_of_gamma()),
         g_(knots.array(KnotRing::kG)),
         velocity_(knots.array(KnotRing::kVelocity)),

@@ -49,9 +49,9 @@ class GivenSolver final : public KnotSolver {
   /// Replaces the given values at knot i by those of the condition.
   void impose(KnotRing& knots, const Condition& condition, std::size_t i) const noexcept {
     const auto kind = condition.kind;
-    const bool stands = kind == ConditionKind::clamped || kind == ConditionKind::halt;
+    const bool rests = kind == ConditionKind::clamped || kind == ConditionKind::halt;
     const auto v = knots.values(i, KnotRing::kVelocity);
-    if (stands) std::ranges::fill(v, 0.0);
+    if (rests) std::ranges::fill(v, 0.0);
     if (kind == ConditionKind::velocity) std::ranges::copy(condition.value, v.begin());
     if (!has_accelerations_) return;
     const auto a = knots.values(i, KnotRing::kAcceleration);

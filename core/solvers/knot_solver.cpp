@@ -25,7 +25,7 @@ void solve_lone_knot(KnotRing& knots, const Condition& start) noexcept {
 
 SPLINECAST_VECTOR_CLONES
 void back_substitute_to(KnotRing& knots, std::size_t last) noexcept {
-  const RowsBehind rows(knots, last);
+  const OlderRows rows(knots, last);
   const double* const newest = knots.values(knots.newest(), KnotRing::kVelocity).data();
   const auto body = [&](auto lane, auto groups, std::size_t first) __attribute__((always_inline)) {
     using Lane = typename decltype(lane)::type;

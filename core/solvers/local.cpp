@@ -16,7 +16,7 @@ class LocalSolver final : public KnotSolver {
             start.kind == ConditionKind::own && how.method->rule->natural_end ? Condition{} : start,
             dimensions),
         rule_(how.method->rule),
-        time_scale_(how.time_scale) {}
+        scale_(how.time_scale) {}
 
   void eliminate_again(KnotRing& knots) const noexcept override {
     if (knots.size() > 1) eliminate_start(knots);
@@ -78,7 +78,7 @@ class LocalSolver final : public KnotSolver {
   }
 
   void write_slope(const KnotRing& knots, std::size_t i, std::span<double> v) const noexcept {
-    Stencil stencil(time_scale_);
+    Stencil stencil(scale_);
     for (std::size_t d = 0; d < v.size(); ++d) {
       fill(knots, i, d, stencil);
       v[d] = rule_->slope(stencil);
@@ -90,7 +90,7 @@ class LocalSolver final : public KnotSolver {
   void fill(const KnotRing& knots, std::size_t i, std::size_t d, Stencil& out) const noexcept {
     const int before = static_cast<int>(std::min<std::size_t>(i, kMaxReach));
     const int after = static_cast<int>(std::min<std::size_t>(knots.newest() - i, kMaxReach));
-    const int first = -std::min(before, std::max(rule_->behind, 2));
+    const int first = -std::min(before, std::max(rule_->before, 2));
     const int last = std::min(after, std::max(rule_->ahead, 2));
     for (int k = first; k < last; ++k) {
       const std::size_t interval = i + static_cast<std::size_t>(k);
@@ -102,7 +102,7 @@ class LocalSolver final : public KnotSolver {
     for (int k = after; k < rule_->ahead; ++k) {
       extend(out, k, k - 1, k - 2 >= -before ? k - 2 : k - 1);
     }
-    for (int k = -before - 1; k >= -rule_->behind; --k) {
+    for (int k = -before - 1; k >= -rule_->before; --k) {
       extend(out, k, k + 1, k + 2 < after ? k + 2 : k + 1);
     }
   }
@@ -114,7 +114,7 @@ class LocalSolver final : public KnotSolver {
   }
 
   const SlopeRule* rule_;
-  double time_scale_;
+  double scale_;
 };
 
 }  // namespace

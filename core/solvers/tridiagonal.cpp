@@ -26,8 +26,8 @@ void eliminate(KnotRing& knots, std::size_t i) noexcept {
 /// from `last` on. The values of a dimension stay in registers. Does not solve row 0: its γ depends
 /// on the start condition and may be 0.
 SPLINECAST_VECTOR_CLONES
-void append_behind(KnotRing& knots, std::span<const double> waypoint, Tail tail,
-                   std::size_t last) noexcept {
+void append_after(KnotRing& knots, std::span<const double> waypoint, Tail tail,
+                  std::size_t last) noexcept {
   const std::size_t n = knots.newest();
   const double h = knots.row(n - 1).h;
   const double h_before = knots.row(n - 2).h;
@@ -35,7 +35,7 @@ void append_behind(KnotRing& knots, std::span<const double> waypoint, Tail tail,
   const double gamma = row.gamma();
   knots.gamma(n - 1) = gamma;
   const TailRow end(tail, h, h_before, gamma);
-  const RowsBehind rows(knots, std::max<std::size_t>(last, 1));
+  const OlderRows rows(knots, std::max<std::size_t>(last, 1));
   const double* const position = waypoint.data();
   const std::size_t dimensions = waypoint.size();
   const std::size_t at = knots.place_of(n);
@@ -101,7 +101,7 @@ class TridiagonalSolver final : public KnotSolver {
     // The first rows depend on the start condition and have fewer rows before them.
     if (knots.size() < 3) return KnotSolver::append(knots, waypoint, tail, first);
     knots.push(waypoint.time);
-    append_behind(knots, waypoint.position, tail, first);
+    append_after(knots, waypoint.position, tail, first);
     if (first > 0) return;
     back_substitute(knots.gamma(0), knots.values(0, KnotRing::kG),
                     knots.values(1, KnotRing::kVelocity), knots.values(0, KnotRing::kVelocity));

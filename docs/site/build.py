@@ -41,7 +41,7 @@ class Pages:
             return name.removeprefix("docs/")
         if "/include/splinecast/" in name:
             return f"api/{path.stem.replace('_', '__')}_8hpp.html"
-        if name == "ipc/c/splinecast.h":
+        if name == "ipc/include/splinecast.h":
             return "api/splinecast_8h.html"
         if path not in self.sources:
             self.sources.append(path)

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ipc/c/splinecast.h"
+#include "splinecast.h"
 #include "splinecast/state.hpp"
 #include "splinecast/time.hpp"
 #include "splinecast/waypoint.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ipc/c/splinecast.h"
+#include "splinecast.h"
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/dimension_kind.hpp"
@@ -13,7 +13,6 @@
 namespace splinecast::ipc {
 
 inline constexpr int kConditionKinds = SPLINECAST_OWN + 1;
-inline constexpr int kTails = SPLINECAST_TAIL_CLAMPED + 1;
 inline constexpr int kClocks = SPLINECAST_CLOCK_LAW + 1;
 inline constexpr int kWaitStatuses = SPLINECAST_WAIT_RETIRED + 1;
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ipc/c/splinecast.h"
+#include "splinecast.h"
 #include "splinecast/limits.hpp"
 
 namespace splinecast::ipc {

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <new>
 
-#include "ipc/c/splinecast.h"
+#include "splinecast.h"
 #include "splinecast/errors.hpp"
 
 namespace splinecast::ipc {

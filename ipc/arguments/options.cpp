@@ -1,15 +1,16 @@
 #include "ipc/arguments/options.hpp"
 
-#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
-#include "core/basics/number_text.hpp"
 #include "ipc/arguments/arrays.hpp"
 #include "ipc/arguments/enums.hpp"
 #include "ipc/arguments/structs.hpp"
+#include "ipc/layout/options.hpp"
 #include "splinecast/method.hpp"
 
 namespace splinecast::ipc {
@@ -61,33 +62,24 @@ const Method* method(const char* name) {
   return found;
 }
 
-/// A number that is set, or nothing for −1.
-std::optional<double> number(double value, const char* name) {
-  if (value == static_cast<double>(kNotSet)) return std::nullopt;
-  if (!(value >= 0)) refuse(name, "is " + core::number_text(value));
-  return value;
-}
-
-std::optional<std::int64_t> whole(std::int64_t value, const char* name) {
-  if (value == kNotSet) return std::nullopt;
-  if (value < 0) refuse(name, "is " + std::to_string(value));
-  return value;
-}
-
-std::optional<Time> time(std::int64_t value, const char* name) {
-  const auto set = whole(value, name);
-  return set ? std::optional(Time(*set)) : std::nullopt;
-}
-
-std::optional<std::size_t> size(std::int64_t value, const char* name) {
-  const auto set = whole(value, name);
-  return set ? std::optional(static_cast<std::size_t>(*set)) : std::nullopt;
-}
-
-template <typename Enum>
-std::optional<Enum> choice(int value, int count, const char* name) {
-  if (value == kNotSet) return std::nullopt;
-  return static_cast<Enum>(require_choice(value, count, name));
+/// The value of an option that is set; nothing for −1. A flag is 0 or 1.
+template <typename Row>
+std::optional<typename Row::Value> set_value(const Row& row, const splinecast_solver_options& all) {
+  using Value = typename Row::Value;
+  const auto given = all.*Row::kInC;
+  const std::string name = "options->" + std::string(row.key);
+  if constexpr (std::is_same_v<Value, bool>) {
+    return require_flag(given, name.c_str());
+  } else {
+    if (given == static_cast<decltype(given)>(kNotSet)) return std::nullopt;
+    if constexpr (std::is_enum_v<Value>) {
+      return static_cast<Value>(
+          require_choice(given, static_cast<int>(row.range.most) + 1, name.c_str()));
+    } else {
+      if (!(given >= 0)) refuse(name, "is " + value_text(given));
+      return static_cast<Value>(given);
+    }
+  }
 }
 
 /// A list of limits: one value for all dimensions, or one for each.
@@ -155,7 +147,7 @@ ProducerOptions producer_options(const splinecast_producer_options* given) {
     refuse("options->dimensions", "is " + std::to_string(all.dimensions) + ", not 1 to 64");
   }
   const int clock = require_choice(all.clock, kClocks, "options->clock");
-  return {
+  ProducerOptions options{
       .dimensions = all.dimensions,
       .names = texts(all.names, all.name_count, all.dimensions, "options->names"),
       .units = texts(all.units, all.unit_count, all.dimensions, "options->units"),
@@ -163,36 +155,30 @@ ProducerOptions producer_options(const splinecast_producer_options* given) {
       .clock = static_cast<StreamClock>(clock),
       .law = all.law == nullptr ? "" : std::string(require_text(all.law, "options->law")),
       .start = condition(all.start, all.dimensions, "options->start"),
-      .limits = {.min_interval = Time(all.min_interval), .max_interval = Time(all.max_interval)},
-      .horizon = Time(all.horizon),
-      .start_tolerance = all.start_tolerance,
-      .capacity = all.capacity,
       .access = access_of(all.mode, all.group),
       .trust = trust_of(all.owner, "options->owner")};
+  for_each_stream_option([&](const auto& row) {
+    using Row = std::remove_cvref_t<decltype(row)>;
+    Row::kOption(options) = static_cast<typename Row::Value>(all.*Row::kInC);
+  });
+  return options;
 }
 
 SolverOptions solver_options(const splinecast_solver_options* given) {
   const auto all = read_optional(given, SPLINECAST_SOLVER_OPTIONS_INIT, "options",
                                  offsetof(splinecast_solver_options, largest_rate));
   if (all.reserved != 0) refuse("options->reserved", "is not 0");
-  return {.method = method(all.method),
-          .lambda = number(all.lambda, "options->lambda"),
-          .time_scale = number(all.time_scale, "options->time_scale"),
-          .settle = size(all.settle, "options->settle"),
-          .tail = choice<Tail>(all.tail, kTails, "options->tail"),
-          .force_lag = require_flag(all.force_lag, "options->force_lag"),
-          .stop_time = time(all.stop_time, "options->stop_time"),
-          .limits = limits(all.limits),
-          .named_limits = named_limits(all),
-          .beyond = choice<Beyond>(all.beyond, kBeyonds, "options->beyond"),
-          .freeze_ahead = time(all.freeze_ahead, "options->freeze_ahead"),
-          .history = time(all.history, "options->history"),
-          .min_entry = time(all.min_entry, "options->min_entry"),
-          .largest_rate = number(all.largest_rate, "options->largest_rate"),
-          .capacity = size(all.capacity, "options->capacity"),
-          .wake = require_flag(all.wake, "options->wake"),
-          .access = access_of(all.mode, all.group),
-          .trust = trust_of(all.owner, "options->owner")};
+  SolverOptions options{.method = method(all.method),
+                        .limits = limits(all.limits),
+                        .named_limits = named_limits(all),
+                        .wake = require_flag(all.wake, "options->wake"),
+                        .access = access_of(all.mode, all.group),
+                        .trust = trust_of(all.owner, "options->owner")};
+  for_each_option([&](const auto& row) {
+    using Row = std::remove_cvref_t<decltype(row)>;
+    if (const auto value = set_value(row, all)) options.*Row::kOption = *value;
+  });
+  return options;
 }
 
 FitOptions fit_options(const splinecast_fit_options* given, std::size_t dimensions) {

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "ipc/c/splinecast.h"
+#include "splinecast.h"
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/fit.hpp"
 #include "splinecast/options.hpp"

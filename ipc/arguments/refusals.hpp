@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "ipc/c/splinecast.h"
+#include "splinecast.h"
 #include "splinecast/producer.hpp"
 
 namespace splinecast::ipc {

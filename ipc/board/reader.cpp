@@ -96,8 +96,8 @@ inline bool KnotBoardReader::copy_slot(std::size_t index, Word r, KnotCopy& out)
   if (layout_.smooths) {
     load_values(values.subspan(3 * dimensions, dimensions), cell + kCellVelocity + dimensions);
   }
-  const bool stands = load(cell[kCellTag], std::memory_order_relaxed) == tag;  // R4
-  if (!stands || static_cast<int>(out.note.form) >= core::kSegmentForms ||
+  const bool is_valid = load(cell[kCellTag], std::memory_order_relaxed) == tag;  // R4
+  if (!is_valid || static_cast<int>(out.note.form) >= core::kSegmentForms ||
       !is_knot_time(out.time)) {
     return false;
   }

@@ -34,13 +34,13 @@ Time KnotBoardReader::earliest_change(Word seen, Word r) const noexcept {
   // C3. At most N − 1 of the N words are valid, because a writer that died may have stored the next
   // one. If both tags are retired, it is unknown how far writers have advanced.
   const Tags tags = summary_cells().tags(std::memory_order_acquire);
-  bool stands = false;
+  bool is_found = false;
   for (const Word tag : tags.of) {
     if (tag == kRetiredTag) continue;
     if (revision_of(tag) > seen + kChangesKept - 1) return Time::min();
-    stands = true;
+    is_found = true;
   }
-  return stands ? earliest : Time::min();
+  return is_found ? earliest : Time::min();
 }
 
 bool KnotBoardReader::copy_bounds(const Look& look, Word seen, Summary& out) const noexcept {

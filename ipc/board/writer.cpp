@@ -7,7 +7,7 @@
 
 #include "core/basics/magnitude.hpp"
 #include "ipc/board/tag.hpp"
-#include "ipc/layout/separation.hpp"
+#include "ipc/memory/separation.hpp"
 
 namespace splinecast::ipc {
 

@@ -174,7 +174,7 @@ class KnotBoardWriter {
   [[nodiscard]] Word& settled_word() noexcept { return control_[kSettledUntil]; }
 
   /// Loads the settled word, which a SettledRaise may have raised.
-  [[nodiscard]] Time take_up_settled() noexcept {
+  [[nodiscard]] Time resume_settled() noexcept {
     settled_ = load(control_[kSettledUntil], std::memory_order_relaxed);
     return to_time(settled_);
   }

@@ -6,7 +6,7 @@
 #include "ipc/arguments/handles.hpp"
 #include "ipc/arguments/options.hpp"
 #include "ipc/arguments/structs.hpp"
-#include "ipc/c/splinecast.h"
+#include "splinecast.h"
 
 using namespace splinecast;
 using namespace splinecast::ipc;

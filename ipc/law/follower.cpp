@@ -73,7 +73,7 @@ SampleStatus LawFollower::convert(SampleStatus status, LawPoint& out) const noex
   return status;
 }
 
-std::optional<core::LawState> law_state_at(Sampler& sampler, Time host, double largest_rate,
+std::optional<core::LawState> law_state_at(Sampler& sampler, Time host, double max_rate,
                                            State& scratch) noexcept {
   if (!has_values(sampler.preview(host, scratch.ref()))) return std::nullopt;
   // The straight line after a ramp is curved by rounding.
@@ -81,12 +81,12 @@ std::optional<core::LawState> law_state_at(Sampler& sampler, Time host, double l
   const double slope = scratch.acceleration()[0];
   return core::LawState{.time = host,
                         .position = scratch.position()[0],
-                        .rate = std::clamp(scratch.velocity()[0], 0.0, largest_rate),
+                        .rate = std::clamp(scratch.velocity()[0], 0.0, max_rate),
                         .slope = std::abs(slope) < kLeastSlope ? 0 : slope};
 }
 
 std::optional<core::LawState> LawFollower::state_at(Time host) noexcept {
-  return law_state_at(sampler_, host, largest_rate(), state_);
+  return law_state_at(sampler_, host, max_rate(), state_);
 }
 
 SampleStatus LawFollower::sample(Time host, bool is_executed, LawPoint& out) noexcept {
@@ -116,7 +116,7 @@ Time LawClock::now() const noexcept {
   LawPoint point;
   if (has_values(law_->at(host_now_, point))) return point.stream;
   const double seconds = to_seconds(std::max(host_now_ - law_->last_host(), Time::zero()));
-  return law_->last().stream + from_seconds(law_->largest_rate() * seconds);
+  return law_->last().stream + from_seconds(law_->max_rate() * seconds);
 }
 
 Time LawClock::latest(Time now, Time ahead) const noexcept {
@@ -127,7 +127,7 @@ Time LawClock::latest(Time now, Time ahead) const noexcept {
   const Time from = is_known ? std::max(then.stream, now) : now;
   const Time rest = end - (is_known ? settled : host_now_);
   // One nanosecond more, because `stream` is rounded down.
-  return from + from_seconds(law_->largest_rate() * to_seconds(rest)) + Time(1);
+  return from + from_seconds(law_->max_rate() * to_seconds(rest)) + Time(1);
 }
 
 std::optional<Time> LawClock::held() const noexcept {

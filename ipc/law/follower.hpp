@@ -53,8 +53,7 @@ struct LawPoint {
 /// The state of a law's curve at a host time, from a sampler of its board; nothing if it cannot be
 /// read. `scratch` has one dimension.
 [[nodiscard]] std::optional<core::LawState> law_state_at(Sampler& sampler, Time host,
-                                                         double largest_rate,
-                                                         State& scratch) noexcept;
+                                                         double max_rate, State& scratch) noexcept;
 
 /// The time law of a stream, as its readers, its solver and its producer follow it: maps host time
 /// to stream time. Maps the law's board read-only. When the law is removed, its last curve is
@@ -77,8 +76,8 @@ class LawFollower {
   /// The same for readers, which do not use last().
   [[nodiscard]] SampleStatus look_up(Time host, bool is_executed, LawPoint& out) noexcept {
     Sampler::Place place;
-    const bool is_at_hand = sampler_.find_at_hand(host, is_executed, place);
-    if (!is_at_hand || place.order != kMaxOrder) return sample(host, is_executed, out);
+    const bool is_in_current = sampler_.find_current(host, is_executed, place);
+    if (!is_in_current || place.order != kMaxOrder) return sample(host, is_executed, out);
     const auto [s, rate, slope, curvature] = core::evaluate_one(place.coefficients.data(), place.u);
     out = point_of(s, {.rate = rate, .slope = slope, .curvature = curvature});
     return place.status;
@@ -109,7 +108,7 @@ class LawFollower {
   [[nodiscard]] Word revision() const noexcept { return board_.reader.revision(); }
 
   /// The largest rate that the law can have.
-  [[nodiscard]] double largest_rate() const noexcept { return board_.header.largest_rate; }
+  [[nodiscard]] double max_rate() const noexcept { return ipc::max_rate(board_.header); }
 
   /// Whether the law has been removed.
   [[nodiscard]] bool is_lost() const noexcept { return board_.reader.retired(); }
@@ -125,7 +124,7 @@ class LawFollower {
   [[nodiscard]] SampleStatus sample(Time host, bool is_executed, LawPoint& out) noexcept;
   /// Rounding may exceed the bounds that the ramps respect.
   [[nodiscard]] LawPoint point_of(double seconds, core::LawRates rates) const noexcept {
-    rates.rate = within(0, rates.rate, board_.header.largest_rate);
+    rates.rate = within(0, rates.rate, max_rate());
     return point_at(seconds, Time(board_.header.law_origin), rates);
   }
   [[nodiscard]] SampleStatus convert(SampleStatus status, LawPoint& out) const noexcept;

@@ -14,7 +14,7 @@ std::optional<CommanderEntry> LawBoard::commander(Word id) const noexcept {
   seen_ = board_.reader().revision();
   if (!board_.reader().copy_commanders(table)) return std::nullopt;
   for (std::size_t slot = 0; slot < kMostCommanders; ++slot) {
-    const auto entry = entry_of(entry_words(table, slot), largest_rate());
+    const auto entry = entry_of(entry_words(table, slot), max_rate());
     if (entry && entry->id == id) return entry;
   }
   return std::nullopt;
@@ -25,7 +25,7 @@ std::vector<CommanderEntry> LawBoard::commanders() const {
   std::vector<CommanderEntry> found;
   if (!board_.reader().copy_commanders(table)) return found;
   for (std::size_t slot = 0; slot < kMostCommanders; ++slot) {
-    if (auto entry = entry_of(entry_words(table, slot), largest_rate())) found.push_back(*entry);
+    if (auto entry = entry_of(entry_words(table, slot), max_rate())) found.push_back(*entry);
   }
   return found;
 }

@@ -23,7 +23,7 @@ class LawBoard {
   [[nodiscard]] bool is_there() noexcept;
 
   /// The largest rate that the law can have.
-  [[nodiscard]] double largest_rate() const noexcept { return board_.header().largest_rate; }
+  [[nodiscard]] double max_rate() const noexcept { return ipc::max_rate(board_.header()); }
 
   /// The row of the commander whose region has this id; nothing if there is none.
   [[nodiscard]] std::optional<CommanderEntry> commander(Word id) const noexcept;

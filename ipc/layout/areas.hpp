@@ -4,8 +4,8 @@
 #include <tuple>
 
 #include "ipc/layout/header.hpp"
-#include "ipc/layout/separation.hpp"
 #include "ipc/layout/table.hpp"
+#include "ipc/memory/separation.hpp"
 #include "ipc/memory/word.hpp"
 
 namespace splinecast::ipc {

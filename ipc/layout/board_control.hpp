@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <tuple>
 
-#include "ipc/layout/separation.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/layout/table.hpp"
+#include "ipc/memory/separation.hpp"
 
 namespace splinecast::ipc {
 

@@ -1,18 +1,18 @@
 #include "ipc/layout/check.hpp"
 
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
-#include "core/online/sliding_window.hpp"
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/common_control.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/limits.hpp"
-#include "ipc/layout/separation.hpp"
+#include "ipc/layout/options.hpp"
 #include "ipc/memory/names.hpp"
+#include "ipc/memory/separation.hpp"
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
@@ -20,9 +20,6 @@
 
 namespace splinecast::ipc {
 namespace {
-
-/// An upper bound of all intervals. Its sum with any valid time does not overflow.
-constexpr std::uint64_t kLongestNanoseconds = std::uint64_t{1} << 61U;
 
 /// kByteOrder as a machine with the other byte order writes it.
 constexpr std::uint32_t kOtherByteOrder = 0x04030201;
@@ -72,8 +69,8 @@ void require_this_layout(const RegionHeader& header) {
 void require_law(const RegionHeader& header) {
   require_range("time law", header.is_law, 0, 1);
   const bool has_rate = header.is_law != 0 || header.law_id != 0;
-  if (has_rate && !(header.largest_rate > 0 && header.largest_rate <= kLargestRate)) {
-    throw BadRegion("region has largest rate " + std::to_string(header.largest_rate));
+  if (has_rate && !(max_rate(header) > 0 && max_rate(header) <= kLargestRate)) {
+    throw BadRegion("region has largest rate " + std::to_string(max_rate(header)));
   }
   const bool follows = header.clock == static_cast<std::uint64_t>(StreamClock::law);
   if (follows == (header.law_id != 0) && follows == is_stream_name(text_of(header.law))) return;
@@ -98,6 +95,24 @@ void require_region(const RegionHeader& header, RegionKind kind, std::size_t rea
   require(header.region_bytes == real_bytes, "size", real_bytes, header.region_bytes);
 }
 
+/// Checks the word of a header that has this option.
+template <typename Row>
+void require_in_range(const Row& row, const RegionHeader& header) {
+  const auto found = header.*Row::kField;
+  const auto word = [](auto value) {
+    if constexpr (std::is_same_v<decltype(value), Time>)
+      return value.count();
+    else
+      return static_cast<std::remove_cvref_t<decltype(found)>>(value);
+  };
+  if (!has_option(row, header) ||
+      (found >= word(row.range.least) && found <= word(row.range.most))) {
+    return;
+  }
+  throw BadRegion("region has " + std::string(row.name) + ' ' + value_text(found) + ", not " +
+                  std::string(row.range.text));
+}
+
 /// Checks the values that both regions of a stream have.
 void require_stream(const RegionHeader& header, std::size_t max_capacity) {
   require_range("dimensions", header.dimensions, kMinDimensions, kMaxDimensions);
@@ -116,10 +131,8 @@ void require_stream(const RegionHeader& header, std::size_t max_capacity) {
     if (is_usable(header.start_value[d])) continue;
     throw BadRegion("region has start value " + std::to_string(header.start_value[d]));
   }
-  require_range("least interval", static_cast<std::uint64_t>(header.min_interval), 1,
-                kLongestNanoseconds);
-  require_range("most interval", static_cast<std::uint64_t>(header.max_interval), 1,
-                kLongestNanoseconds);
+  require_in_range(stream_option<&min_interval_of>(), header);
+  require_in_range(stream_option<&max_interval_of>(), header);
 }
 
 /// Checks the values that define the curve. SlidingWindow refuses invalid ones too, but does not
@@ -130,14 +143,11 @@ void require_curve(const RegionHeader& header) {
     throw BadRegion("region has method " + std::to_string(header.method) +
                     ", which is not an online method");
   }
-  if (!std::isfinite(header.lambda) || header.lambda < 0) {
-    throw BadRegion("region has lambda " + std::to_string(header.lambda));
+  for_each_option([&](const auto& row) { require_in_range(row, header); });
+  if (!method->converges()) {
+    require_range("settle lag", header.settle, method->look_ahead, core::kMaxSettle);
   }
-  if (!std::isfinite(header.time_scale) || header.time_scale <= 0) {
-    throw BadRegion("region has time scale " + std::to_string(header.time_scale));
-  }
-  require_range("settle lag", header.settle, method->converges() ? 0 : method->look_ahead,
-                core::kMaxSettle);
+  require_range("rules", header.rules, kFormerRules, kRules);
 }
 
 void require_motion_limits(const RegionHeader& header) {
@@ -165,17 +175,7 @@ BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_by
   require_curve(header);
   const auto layout = BoardLayout::of(header.dimensions, header.capacity, header.control,
                                       smooths(header), header.is_law != 0);
-  require_range("tail", header.tail, 0, static_cast<std::uint64_t>(Tail::clamped));
-  require_range("freeze-ahead", static_cast<std::uint64_t>(header.freeze_ahead), 1,
-                kLongestNanoseconds);
-  require_range("history", static_cast<std::uint64_t>(header.history), 0, kLongestNanoseconds);
-  require_range("shortest entry", static_cast<std::uint64_t>(header.min_entry), 1,
-                kLongestNanoseconds);
-  require_range("action beyond the limits", header.beyond, 0, kBeyonds - 1);
-  require_range("rules", header.rules, kFormerRules, kRules);
   require_motion_limits(header);
-  require_range("stop time", static_cast<std::uint64_t>(header.stop_time), 1,
-                static_cast<std::uint64_t>(kLongestStop.count()));
   require(header.stride == layout.stride, "slot size", header.stride, layout.stride);
   require(real_bytes == layout.bytes, "size", real_bytes, layout.bytes);
   return layout;

@@ -6,8 +6,8 @@
 #include "ipc/layout/board_control.hpp"
 #include "ipc/layout/request_control.hpp"
 #include "ipc/layout/ring_control.hpp"
-#include "ipc/layout/separation.hpp"
 #include "ipc/layout/table.hpp"
+#include "ipc/memory/separation.hpp"
 #include "ipc/memory/word.hpp"
 
 namespace splinecast::ipc {

@@ -209,6 +209,11 @@ inline constexpr std::tuple kHeaderRows{
 inline constexpr auto kHeaderFields = place(kHeaderRows);
 inline constexpr std::size_t kHeaderWords = size_of(kHeaderFields).words;
 
+/// The largest rate of a law, or of the law that the stream follows.
+[[nodiscard]] inline double max_rate(const RegionHeader& header) noexcept {
+  return header.largest_rate;
+}
+
 /// Whether a header's method smooths: then its board's cells and rows have more words.
 [[nodiscard]] bool smooths(const RegionHeader& header) noexcept;
 

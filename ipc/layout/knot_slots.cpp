@@ -4,7 +4,7 @@
 
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/request_control.hpp"
-#include "ipc/layout/separation.hpp"
+#include "ipc/memory/separation.hpp"
 #include "ipc/memory/word.hpp"
 
 namespace splinecast::ipc {

@@ -4,8 +4,8 @@
 #include <tuple>
 
 #include "ipc/layout/areas.hpp"
-#include "ipc/layout/separation.hpp"
 #include "ipc/layout/table.hpp"
+#include "ipc/memory/separation.hpp"
 
 namespace splinecast::ipc {
 

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <tuple>
 
-#include "ipc/layout/separation.hpp"
 #include "ipc/layout/table.hpp"
+#include "ipc/memory/separation.hpp"
 
 namespace splinecast::ipc {
 

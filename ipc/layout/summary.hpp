@@ -7,8 +7,8 @@
 #include <tuple>
 
 #include "core/motion/end.hpp"
-#include "ipc/layout/separation.hpp"
 #include "ipc/layout/table.hpp"
+#include "ipc/memory/separation.hpp"
 #include "ipc/memory/word.hpp"
 #include "splinecast/time.hpp"
 #include "splinecast/waypoint.hpp"
@@ -47,7 +47,7 @@ enum class Following : std::uint8_t {
       return "meets";
   }
 }
-inline constexpr Time kUnmetTold{1'000'000'000};
+inline constexpr Time kUnmetReported{1'000'000'000};
 inline constexpr Time kUnmetRefused{3'000'000'000};
 
 /// No item has this number.
@@ -119,7 +119,7 @@ struct Summary {
   [[nodiscard]] Following following() const noexcept {
     if (refused_until < Time::max()) return Following::cannot_follow;
     if (unmet_since == Time::max() || newest_time <= unmet_since) return Following::meets;
-    return newest_time - unmet_since > kUnmetTold ? Following::meets_none : Following::meets;
+    return newest_time - unmet_since > kUnmetReported ? Following::meets_none : Following::meets;
   }
   /// Waypoints that the curve interpolates, including replaced ones.
   [[nodiscard]] Word interpolated() const noexcept { return knots - passed_over - cut_off; }

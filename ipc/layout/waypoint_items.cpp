@@ -1,7 +1,7 @@
 #include "ipc/layout/waypoint_items.hpp"
 
 #include "ipc/layout/areas.hpp"
-#include "ipc/layout/separation.hpp"
+#include "ipc/memory/separation.hpp"
 #include "ipc/memory/word.hpp"
 
 namespace splinecast::ipc {

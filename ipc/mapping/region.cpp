@@ -15,9 +15,9 @@
 #include <utility>
 
 #include "ipc/layout/areas.hpp"
-#include "ipc/layout/separation.hpp"
 #include "ipc/memory/descriptor.hpp"
 #include "ipc/memory/mode_text.hpp"
+#include "ipc/memory/separation.hpp"
 #include "ipc/memory/system_failure.hpp"
 #include "splinecast/errors.hpp"
 

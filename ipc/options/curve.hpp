@@ -30,9 +30,12 @@ void write_options(const SolverOptions& options, RegionHeader& header);
 /// The options of a live stream in a header; empty for a recorded one.
 [[nodiscard]] std::optional<LiveOptions> live_options(const RegionHeader& header) noexcept;
 
+/// Writes the law that a stream follows, from its header, into the header of the stream.
+void put_law(const RegionHeader& law, RegionHeader& header) noexcept;
+
 /// Throws BadRequest, naming what differs, if a solver's options contradict the header of the board
 /// that it takes over.
-void require_same_options(const std::string& stream, const RegionHeader& stands,
+void require_same_options(const std::string& stream, const RegionHeader& existing,
                           const SolverOptions& options);
 
 }  // namespace splinecast::ipc

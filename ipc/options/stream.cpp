@@ -1,18 +1,17 @@
 #include "ipc/options/stream.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <span>
 #include <stdexcept>
 
-#include "core/basics/number_text.hpp"
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/common_control.hpp"
 #include "ipc/layout/header.hpp"
-#include "ipc/layout/separation.hpp"
+#include "ipc/layout/options.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/process_life.hpp"
+#include "ipc/memory/separation.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/waypoint.hpp"
 
@@ -67,6 +66,20 @@ void put_kinds(const ProducerOptions& options, RegionHeader& header) {
   }
 }
 
+/// Throws BadRequest for a value out of its option's range.
+void require_ranges(ProducerOptions options) {
+  for_each_stream_option([&](const auto& row) {
+    const auto value = row.kOption(options);
+    if (is_in_range(row, value)) return;
+    throw BadRequest(std::string(row.name) + " must be " + std::string(row.range.text) + ", not " +
+                     value_text(value));
+  });
+  if (options.limits.max_interval >= options.limits.min_interval) return;
+  throw BadRequest("longest interval must be min_interval, " +
+                   value_text(options.limits.min_interval) + ", or more, not " +
+                   value_text(options.limits.max_interval));
+}
+
 }  // namespace
 
 void require_usable(const std::string& which, const Condition& condition, std::size_t dimensions) {
@@ -96,21 +109,7 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
   if (options.dimensions < kMinDimensions || options.dimensions > kMaxDimensions) {
     throw BadRequest("a stream has 1 to 64 dimensions, not " + std::to_string(options.dimensions));
   }
-  if (options.limits.min_interval < Time(1) ||
-      options.limits.max_interval < options.limits.min_interval ||
-      options.limits.max_interval > kLatestTime / 2) {
-    throw BadRequest("intervals from " + std::to_string(options.limits.min_interval.count()) +
-                     " ns to " + std::to_string(options.limits.max_interval.count()) +
-                     " ns are not a range of positive times");
-  }
-  if (options.horizon <= Time::zero()) {
-    throw BadRequest("a horizon of " + std::to_string(options.horizon.count()) +
-                     " ns is not above 0");
-  }
-  if (!(options.start_tolerance >= 0) || !std::isfinite(options.start_tolerance)) {
-    throw BadRequest("a start tolerance of " + core::number_text(options.start_tolerance) +
-                     " is not 0 or more");
-  }
+  require_ranges(options);
   require_usable("start", options.start, options.dimensions);
   if ((options.clock == StreamClock::law) == options.law.empty()) {
     throw BadRequest(options.law.empty() ? "a stream with clock law needs the name of a law"
@@ -119,8 +118,10 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
   RegionHeader header = blank_header(stream_id, is_live(options.clock));
   header.dimensions = options.dimensions;
   header.clock = static_cast<std::uint64_t>(options.clock);
-  header.min_interval = options.limits.min_interval.count();
-  header.max_interval = options.limits.max_interval.count();
+  ProducerOptions values = options;
+  for_each_stream_option([&](const auto& row) {
+    if constexpr (row.kHasField) put_value(row, row.kOption(values), header);
+  });
   header.start_kind = static_cast<std::uint64_t>(options.start.kind);
   std::ranges::copy(options.start.value, header.start_value.begin());
   std::ranges::copy(options.law.substr(0, kLawNameBytes - 1), header.law.begin());
@@ -151,8 +152,8 @@ DimensionKinds dimension_kinds(const RegionHeader& header) {
   return DimensionKinds(dimensions_of(header));
 }
 
-IngestLimits ingest_limits(const RegionHeader& header) noexcept {
-  return {.min_interval = Time(header.min_interval), .max_interval = Time(header.max_interval)};
+IntervalRange interval_range(const RegionHeader& header) noexcept {
+  return {.least = Time(header.min_interval), .most = Time(header.max_interval)};
 }
 
 StreamClock stream_clock(const RegionHeader& header) noexcept {
@@ -175,30 +176,34 @@ void require_same_stream(const RegionHeader& ring, const RegionHeader& board) {
   require(start_condition(ring) == start_condition(board), "the start condition");
 }
 
-void require_same_options(const std::string& stream, const RegionHeader& stands,
+void require_same_options(const std::string& stream, const RegionHeader& existing,
                           const ProducerOptions& options) {
   const auto contradict = [&](const std::string& what) {
     throw BadRequest("stream '" + stream + "' was left unfinished by its producer and has " + what +
                      "; 'splinecast rm " + stream +
                      "' removes it, once its solver has been stopped");
   };
-  const RegionHeader wanted = make_header(options, stands.stream_id);
-  if (wanted.dimensions != stands.dimensions) {
-    contradict(std::to_string(stands.dimensions) + " dimensions, not " +
+  const RegionHeader wanted = make_header(options, existing.stream_id);
+  if (wanted.dimensions != existing.dimensions) {
+    contradict(std::to_string(existing.dimensions) + " dimensions, not " +
                std::to_string(wanted.dimensions));
   }
-  if (wanted.clock != stands.clock) contradict("another clock");
-  if (wanted.law != stands.law) contradict("time law '" + text_of(stands.law) + "'");
-  if (start_condition(wanted) != start_condition(stands)) {
-    contradict("start condition " + to_string(start_condition(stands)) + ", not " +
+  if (wanted.clock != existing.clock) contradict("another clock");
+  if (wanted.law != existing.law) contradict("time law '" + text_of(existing.law) + "'");
+  if (start_condition(wanted) != start_condition(existing)) {
+    contradict("start condition " + to_string(start_condition(existing)) + ", not " +
                to_string(options.start));
   }
-  if (dimensions_of(wanted) != dimensions_of(stands)) contradict("other dimension kinds");
-  if (wanted.name != stands.name) contradict("other dimension names");
-  if (wanted.unit != stands.unit) contradict("other units");
-  if (wanted.min_interval != stands.min_interval || wanted.max_interval != stands.max_interval) {
-    contradict("other interval limits");
-  }
+  if (dimensions_of(wanted) != dimensions_of(existing)) contradict("other dimension kinds");
+  if (wanted.name != existing.name) contradict("other dimension names");
+  if (wanted.unit != existing.unit) contradict("other units");
+  for_each_stream_option([&](const auto& row) {
+    if constexpr (row.kHasField) {
+      if (value_in(row, wanted) == value_in(row, existing) || row.key == "capacity") return;
+      contradict(std::string(row.name) + ' ' + value_text(value_in(row, existing)) + ", not " +
+                 value_text(value_in(row, wanted)));
+    }
+  });
 }
 
 }  // namespace splinecast::ipc

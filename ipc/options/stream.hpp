@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ipc/layout/header.hpp"
+#include "ipc/ring/item.hpp"
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/dimension_kind.hpp"
@@ -34,7 +35,7 @@ void require_usable(const std::string& which, const Condition& condition, std::s
 
 [[nodiscard]] DimensionKinds dimension_kinds(const RegionHeader& header);
 
-[[nodiscard]] IngestLimits ingest_limits(const RegionHeader& header) noexcept;
+[[nodiscard]] IntervalRange interval_range(const RegionHeader& header) noexcept;
 
 [[nodiscard]] StreamClock stream_clock(const RegionHeader& header) noexcept;
 
@@ -48,7 +49,7 @@ void require_same_stream(const RegionHeader& ring, const RegionHeader& board);
 
 /// Throws BadRequest, naming what differs, if a producer's options contradict the header of the
 /// stream that it is to continue.
-void require_same_options(const std::string& stream, const RegionHeader& stands,
+void require_same_options(const std::string& stream, const RegionHeader& existing,
                           const ProducerOptions& options);
 
 }  // namespace splinecast::ipc

@@ -41,8 +41,8 @@ ContinuedMotion::ContinuedMotion(const WaypointRingReader& ring, const KnotBoard
     : ring_(&ring),
       board_(&board),
       kinds_(dimension_kinds(header)),
-      stop_time_(window_options(header).stop_time),
-      given_(core::limits_at_rate(window_options(header).limits, header.largest_rate)),
+      stop_length_(window_options(header).stop_length),
+      given_(core::limits_at_rate(window_options(header).limits, max_rate(header))),
       shown_(board),
       item_(header.dimensions),
       position_(header.dimensions),
@@ -95,7 +95,7 @@ bool ContinuedMotion::keeps(const MotionLimits& limits, Time interval, Time befo
   return core::keeps_within({.acceleration = limits.acceleration}, &kinds_, bend);
 }
 
-bool ContinuedMotion::goes_on(const Waypoint& waypoint, Time settled) {
+bool ContinuedMotion::continues(const Waypoint& waypoint, Time settled) {
   const Word newest = ring_->written() - 1;
   if (!read(newest) || settled >= item_.time) return true;
   if (waypoint.time <= item_.time) return false;
@@ -114,7 +114,7 @@ bool ContinuedMotion::goes_on(const Waypoint& waypoint, Time settled) {
   Summary summary;
   if (!board_->copy_newest_summary(summary)) return true;
   shown_.restore(*board_, summary, Time::max());
-  shown_.look(stop_time_);
+  shown_.look(stop_length_);
   return keeps(limits(), interval, before);
 }
 
@@ -123,7 +123,7 @@ AppendStatus ContinuedMotion::append(const Waypoint& waypoint, WaypointRingWrite
   const bool is_usable = waypoint.position.size() == position_.size() && is_finite(waypoint) &&
                          kinds_.takes(waypoint.position);
   const Time settled = WaypointRingWriter::earliest_replacement(known);
-  if (!is_usable || goes_on(waypoint, settled)) return writer.append(waypoint, known);
+  if (!is_usable || continues(waypoint, settled)) return writer.append(waypoint, known);
   return replace_motion(waypoint, writer, known);
 }
 

@@ -31,7 +31,7 @@ class ContinuedMotion {
   /// from the chord before it those of acceleration; without limits, those that the motion shows.
   /// A curve that has left its waypoints, or ends in a
   /// stop, leads to any waypoint by an entry. O(kSpan/kStep·(log n + D)).
-  [[nodiscard]] bool goes_on(const Waypoint& waypoint, Time settled);
+  [[nodiscard]] bool continues(const Waypoint& waypoint, Time settled);
 
   /// Appends the first waypoint; or replaces the motion by it, if it does not continue it. Throws
   /// std::bad_alloc only, before it has changed anything.
@@ -46,7 +46,7 @@ class ContinuedMotion {
   const WaypointRingReader* ring_;
   const KnotBoardReader* board_;
   DimensionKinds kinds_;
-  Time stop_time_;
+  Time stop_length_;
   MotionLimits given_;
   ShownMotion shown_;
   RingItem item_;                        ///< scratch

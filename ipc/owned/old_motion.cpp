@@ -26,7 +26,7 @@ Time host_time_of(Time stream, const RegionHeader& header, const Trust& trust) n
     LawPoint point;
     if (!has_values(law.at(host.now(), point))) return Time::min();
     const Time now = point.stream;
-    const double left = to_seconds(std::max(stream - now, Time::zero())) / law.largest_rate();
+    const double left = to_seconds(std::max(stream - now, Time::zero())) / law.max_rate();
     return saturated_sum(host.now(), from_seconds(left));
   } catch (const std::exception&) {
     return Time::min();

@@ -15,10 +15,6 @@ namespace {
 
 OwnedRing make_ring(const std::string& stream, const ProducerOptions& options,
                     const Describe& describe) {
-  if (options.capacity < 2 || options.capacity > kMaxRingCapacity) {
-    throw BadRequest("a ring has 2 to " + std::to_string(kMaxRingCapacity) + " items, not " +
-                     std::to_string(options.capacity));
-  }
   RegionHeader header = make_header(options, random_id());
   header.kind = static_cast<std::uint64_t>(RegionKind::waypoints);
   header.capacity = std::bit_ceil(options.capacity);
@@ -63,7 +59,7 @@ OwnedRing::OwnedRing(Region mapped, const RegionHeader& described, const RingLay
       lock(region.descriptor()),
       header(described),
       layout(of_it),
-      writer(region.bytes(), of_it, ingest_limits(described)) {}
+      writer(region.bytes(), of_it, interval_range(described)) {}
 
 OwnedRing own_ring(const std::string& stream, const ProducerOptions& options, OwnerLock& lock,
                    const Describe& describe) {

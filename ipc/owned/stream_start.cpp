@@ -6,6 +6,7 @@
 
 #include "core/limits/limit_of.hpp"
 #include "ipc/options/curve.hpp"
+#include "ipc/options/stream.hpp"
 #include "ipc/ring/item.hpp"
 
 namespace splinecast::ipc {
@@ -20,8 +21,8 @@ constexpr Time kAmpleLead = std::chrono::milliseconds(100);
 StreamStart::StreamStart(const std::string& stream, const OwnedRing& ring,
                          const ProducerOptions& options)
     : zeros_(ring.header.dimensions),
-      largest_rate_(ring.header.largest_rate),
-      max_interval_(ring.header.max_interval) {
+      max_rate_(max_rate(ring.header)),
+      longest_interval_(interval_range(ring.header).most) {
   if (ring.writer.has_begun()) return;
   old_ = OldEnd::find(stream, ring.header, options.start_tolerance, options.trust);
 }
@@ -30,7 +31,7 @@ StreamStart::StreamStart(const std::string& stream, const OwnedRing& ring,
 /// attached, of the old stream.
 MotionLimits StreamStart::limits(const RegionHeader* board) const {
   return core::limits_at_rate(board != nullptr ? window_options(*board).limits : old_->limits(),
-                              largest_rate_);
+                              max_rate_);
 }
 
 Instant StreamStart::state(const Solved& known) const noexcept {
@@ -50,7 +51,7 @@ AppendStatus StreamStart::begin(const Waypoint& first, std::optional<Time> repla
     if (known_end == OldEnd::Known::no) return AppendStatus::accepted;
     if (known_end == OldEnd::Known::not_yet) return writer.counted(AppendStatus::elsewhere);
     Instant at = state(known);
-    at.time = std::max(at.time, first.time - max_interval_);
+    at.time = std::max(at.time, first.time - longest_interval_);
     const Time from = std::max(at.time, replaced_from.value_or(at.time));
     const OldEnd::Way way = old_->way_to(first.position, first.time - from, limits(board));
     if (way == OldEnd::Way::elsewhere) return writer.counted(AppendStatus::elsewhere);

@@ -61,8 +61,8 @@ class StreamStart {
   [[nodiscard]] AppendStatus started(AppendStatus status) noexcept;
 
   std::vector<double> zeros_;
-  double largest_rate_;
-  Time max_interval_;
+  double max_rate_;
+  Time longest_interval_;
   std::optional<OldEnd> old_;  ///< until the stream has started
 };
 

@@ -5,7 +5,6 @@ install(TARGETS splinecast splinecast_static EXPORT splinecast-targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY core/include/ ipc/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(FILES ipc/c/splinecast.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 if(TARGET splinecast_program)
   install(TARGETS splinecast_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()

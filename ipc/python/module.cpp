@@ -13,7 +13,7 @@
 namespace splinecast::python {
 
 void require_keywords(const py::kwargs& keywords, const char* function,
-                      std::initializer_list<std::string_view> known) {
+                      std::span<const std::string> known) {
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
     if (std::ranges::find(known, name) != known.end()) continue;

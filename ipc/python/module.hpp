@@ -2,8 +2,8 @@
 
 #include <pybind11/pybind11.h>
 
-#include <initializer_list>
-#include <string_view>
+#include <span>
+#include <string>
 
 /// The parts of the extension module.
 namespace splinecast::python {
@@ -22,6 +22,6 @@ void define_fit(py::module_& module);
 
 /// Throws TypeError for a keyword that is not one of these.
 void require_keywords(const py::kwargs& keywords, const char* function,
-                      std::initializer_list<std::string_view> known);
+                      std::span<const std::string> known);
 
 }  // namespace splinecast::python

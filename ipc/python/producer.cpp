@@ -379,10 +379,7 @@ std::unique_ptr<HeldProducer> make(const std::string& stream, const py::object& 
                                    const py::object& units, const py::kwargs& keywords) {
   keywords["names"] = names;
   keywords["units"] = units;
-  require_keywords(
-      keywords, "Producer",
-      {"names", "units", "dimensions", "kinds", "clock", "law", "start", "min_interval",
-       "max_interval", "horizon", "start_tolerance", "capacity", "mode", "group", "owner"});
+  require_keywords(keywords, "Producer", producer_keywords());
   return std::make_unique<HeldProducer>(stream, producer_options(keywords));
 }
 

@@ -66,7 +66,7 @@ class HeldCommander {
 
 std::unique_ptr<HeldCommander> make(const std::string& law, const std::string& commander,
                                     const py::kwargs& keywords) {
-  require_keywords(keywords, "RateCommander", {"mode", "group", "owner"});
+  require_keywords(keywords, "RateCommander", access_keywords());
   Trust trusted;
   const RegionAccess allowed = access(keywords, trusted);
   return std::make_unique<HeldCommander>(law, commander, allowed, trusted);
@@ -107,7 +107,7 @@ class HeldStopper {
 
 std::unique_ptr<HeldStopper> make_stopper(const std::string& stream, const std::string& stopper,
                                           const py::kwargs& keywords) {
-  require_keywords(keywords, "Stopper", {"mode", "group", "owner"});
+  require_keywords(keywords, "Stopper", access_keywords());
   Trust trusted;
   const RegionAccess allowed = access(keywords, trusted);
   return std::make_unique<HeldStopper>(stream, stopper, allowed, trusted);

@@ -203,10 +203,7 @@ void define_properties(Class& solver) {
 std::unique_ptr<HeldSolver> make(const std::string& stream, const py::object& method,
                                  const py::kwargs& keywords) {
   keywords["method"] = method;
-  require_keywords(keywords, "Solver",
-                   {"method", "lam", "time_scale", "settle", "tail", "force_lag", "stop_time",
-                    "limits", "named_limits", "beyond", "freeze_ahead", "history", "min_entry",
-                    "largest_rate", "capacity", "wake", "mode", "group", "owner"});
+  require_keywords(keywords, "Solver", solver_keywords());
   return std::make_unique<HeldSolver>(stream, solver_options(keywords));
 }
 

@@ -65,14 +65,20 @@ struct RingItem {
 inline constexpr Time kMostLate = core::Extrapolation::kLine;
 static_assert(kMostLate == Time{250'000'000});  // as Refusal::past says
 
+/// The interval allowed between two consecutive waypoints.
+struct IntervalRange {
+  Time least = IngestLimits{}.min_interval;
+  Time most = IngestLimits{}.max_interval;
+};
+
 /// Whether a waypoint may follow another one after this interval: `accepted`, or the reason why
 /// not.
 [[nodiscard]] constexpr AppendStatus judge_interval(Time interval,
-                                                    const IngestLimits& limits) noexcept {
+                                                    const IntervalRange& range) noexcept {
   if (interval == Time::zero()) return AppendStatus::duplicate;
   if (interval < Time::zero()) return AppendStatus::out_of_order;
-  if (interval < limits.min_interval) return AppendStatus::too_close;
-  if (interval > limits.max_interval) return AppendStatus::too_far_apart;
+  if (interval < range.least) return AppendStatus::too_close;
+  if (interval > range.most) return AppendStatus::too_far_apart;
   return AppendStatus::accepted;
 }
 

@@ -23,9 +23,9 @@ bool fits(std::span<const double> values, std::size_t dimensions) noexcept {
 }  // namespace
 
 WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,
-                                       const IngestLimits& limits)
+                                       const IntervalRange& intervals)
     : layout_(layout),
-      limits_(limits),
+      intervals_(intervals),
       control_(words_at(region, layout.control, kRingControlWords)),
       items_(words_at(region, layout.items, layout.capacity * words_per_item(layout))),
       written_(load(control_[kWritten], std::memory_order_relaxed)) {
@@ -70,7 +70,7 @@ AppendStatus WaypointRingWriter::check(const Waypoint& waypoint,
     status = AppendStatus::too_far_ahead;
   }
   if (status == AppendStatus::accepted && has_last_) {
-    status = judge_interval(waypoint.time - last_time_, limits_);
+    status = judge_interval(waypoint.time - last_time_, intervals_);
     if (status == AppendStatus::too_far_apart && follows_pause(waypoint.time, solved)) {
       status = AppendStatus::accepted;
     }
@@ -115,12 +115,12 @@ bool WaypointRingWriter::cannot_follow(Time time, const Solved& solved) const no
          solved.consumed == written_;
 }
 
-/// Whether a waypoint that is more than max_interval after the newest item is valid because it
-/// follows the settled time or now closely enough. So a live stream may continue after a pause of
-/// any length: its clock also advances at rest.
+/// Whether a waypoint that is more than the longest interval after the newest item is valid because
+/// it follows the settled time or now closely enough. So a live stream may continue after a pause
+/// of any length: its clock also advances at rest.
 bool WaypointRingWriter::follows_pause(Time time, const Solved& solved) const noexcept {
   const auto follows = [&](Time since) {
-    return since > last_time_ && time - since <= limits_.max_interval;
+    return since > last_time_ && time - since <= intervals_.most;
   };
   return follows(solved.settled_until) || (solved.clock != nullptr && follows(solved.clock->now()));
 }
@@ -150,7 +150,7 @@ AppendStatus WaypointRingWriter::check_replacement(Time t, std::span<const Waypo
   const Time earliest = earliest_replacement(solved);
   const bool is_soonest = t == kSoonest;
   const Time from = is_soonest ? std::max(earliest, -kLatestTime) : t;
-  if (!is_time_in_range(from) || blend > limits_.max_interval) return AppendStatus::too_far_apart;
+  if (!is_time_in_range(from) || blend > intervals_.most) return AppendStatus::too_far_apart;
   if (from < earliest) return AppendStatus::too_late;
   const std::size_t items = 1 + waypoints.size();
   if (items + control_reserve(layout_.capacity) > layout_.capacity) return AppendStatus::too_many;
@@ -173,9 +173,9 @@ AppendStatus WaypointRingWriter::check_path(Time t, bool is_soonest,
     }
     const bool is_first = &waypoint == &waypoints.front();
     const bool is_begin =
-        is_soonest && is_first && (t == -kLatestTime || waypoint.time - t < limits_.min_interval);
+        is_soonest && is_first && (t == -kLatestTime || waypoint.time - t < intervals_.least);
     if (status == AppendStatus::accepted && !is_begin) {
-      status = judge_interval(waypoint.time - before, limits_);
+      status = judge_interval(waypoint.time - before, intervals_);
     }
     if (status != AppendStatus::accepted) return status;
     before = waypoint.time;
@@ -186,7 +186,7 @@ AppendStatus WaypointRingWriter::check_path(Time t, bool is_soonest,
 Time WaypointRingWriter::earliest_replacement(const Solved& solved) noexcept {
   if (solved.clock == nullptr) return solved.settled_until;
   const Time now = solved.clock->now();
-  return std::max(solved.settled_until, solved.clock->latest(now, solved.freeze_ahead));
+  return std::max(solved.settled_until, solved.clock->latest(now, solved.settle_ahead));
 }
 
 AppendStatus WaypointRingWriter::replace_from(Time t, std::span<const Waypoint> waypoints,

@@ -73,7 +73,7 @@ class WaypointRingWriter {
   /// are in the ring. Throws BadRegion if the last item's time is out of range: no producer writes
   /// such a time.
   WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,
-                     const IngestLimits& limits);
+                     const IntervalRange& intervals);
 
   /// What the solver last published: the number of items consumed, and the settled time, before
   /// which the solver changes nothing; min() on a recorded stream. While the curve is at rest, the
@@ -87,7 +87,7 @@ class WaypointRingWriter {
     /// Until when the solver refuses waypoints as `cannot follow`; max(): it does not. Counts while
     /// it has consumed all items.
     Time refused_until = Time::max();
-    Time freeze_ahead{};      ///< of the solver of a live stream; 0 if it is not known
+    Time settle_ahead{};      ///< of the solver of a live stream; 0 if it is not known
     bool is_stopped = false;  ///< a stopper holds the stream
   };
 
@@ -112,7 +112,7 @@ class WaypointRingWriter {
   /// that time, and must fit into the ring together with the replacement itself and
   /// control_reserve(). One store of
   /// `written` makes all of it visible. O(D) per waypoint. The entry onto the waypoints has at
-  /// least the length `blend`: a negative one means 0, one above max_interval gives
+  /// least the length `blend`: a negative one means 0, one above the longest interval gives
   /// `too_far_apart`. A replacement without waypoints is a stop, which may use the reserve. A stop
   /// at a time that has settled takes effect as early as possible. A stop adds no item if the
   /// newest item is a stop at the same time or earlier that has not been consumed.
@@ -177,7 +177,7 @@ class WaypointRingWriter {
   void publish(Word items, Time last) noexcept;
 
   RingLayout layout_;
-  IngestLimits limits_;
+  IntervalRange intervals_;
   std::span<Word> control_;
   std::span<Word> items_;
   Word written_ = 0;

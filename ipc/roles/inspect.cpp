@@ -40,7 +40,7 @@ void inspect_spline(StreamInfo& info, const Trust& trust) {
   if (live_options(header)) {
     ShownMotion shown(board);
     shown.restore(board, info.summary, Time::max());
-    shown.look(Time(header.stop_time));
+    shown.look(window_options(header).stop_length);
     info.shown = shown.limits();
   }
   info.refusals.resize(kRefusalsKept);

@@ -64,7 +64,7 @@ LawServer::LawServer(const std::string& law, const SolverOptions& options, const
                        header.largest_rate = options.largest_rate.value_or(1.0);
                      })),
       commanders_(law, options.trust, watch),
-      rate_(ring_.header.largest_rate) {
+      rate_(max_rate(ring_.header)) {
   lock_.keep_file();
   commanders_.look_around();
 }
@@ -99,7 +99,7 @@ LawPlan LawServer::begin(Time now, Time settled) noexcept {
 }
 
 std::optional<core::LawState> LawServer::state_at(Time time) noexcept {
-  return law_state_at(*sampler_, time, ring_.header.largest_rate, state_);
+  return law_state_at(*sampler_, time, max_rate(ring_.header), state_);
 }
 
 bool LawServer::read_newest() noexcept {
@@ -144,7 +144,7 @@ void LawServer::look_around(const Clock& clock) {
         return state.is_used() && !rate_.knows(state.id);
       });
   // Before a new commander is read, which the next plan makes known.
-  if (is_rate_known_) faults_.set(faults_of(commanders_, rate_, ring_.header.largest_rate));
+  if (is_rate_known_) faults_.set(faults_of(commanders_, rate_, max_rate(ring_.header)));
   commanders_.look_around(needs_room);
   next_look_ = now + kLookEvery;
 }

@@ -71,10 +71,7 @@ struct Producer::Impl {
         lock((ipc::require_stream_name(stream), stream), ipc::RegionKind::waypoints),
         of_law(header_of_law()),
         ring(ipc::own_ring(stream, options, lock,
-                           [this](ipc::RegionHeader& header) {
-                             header.law_id = of_law.stream_id;
-                             header.largest_rate = of_law.largest_rate;
-                           })),
+                           [this](ipc::RegionHeader& header) { ipc::put_law(of_law, header); })),
         continues(ring.writer.written() > 0),
         is_first(continues),
         sent(ring.region.bytes(), ring.layout),
@@ -136,7 +133,7 @@ struct Producer::Impl {
     known.clock = &stream_clock();
     if (!law && options.horizon < Time::max()) known.horizon = options.horizon;
     if (!solver) return known;
-    known.freeze_ahead = Time(solver->header.freeze_ahead);
+    known.settle_ahead = Time(solver->header.freeze_ahead);
     const ipc::Look look = solver->reader.look();
     const bool is_time = is_time_in_range(look.settled_until);
     if (look.revision > 0 && is_time) settled_until = look.settled_until;
@@ -271,7 +268,7 @@ void Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
   out.from_rest = false;
   if (const auto held = known.clock != nullptr ? known.clock->held() : std::nullopt) {
     const Time rest = *held + Time(1);
-    out.from_rest = ipc::begins_at_rest(t, rest, known.settled_until, known.freeze_ahead);
+    out.from_rest = ipc::begins_at_rest(t, rest, known.settled_until, known.settle_ahead);
     if (out.from_rest) out.begin = rest;
   }
   impl_->planner->plan(waypoints, options.blend, out);

@@ -117,9 +117,9 @@ std::uint64_t RateCommander::set_rate(double rate, Time ramp) {
     throw BadRequest("a rate must be 0 to 100, not " + std::to_string(rate));
   }
   require_length("a ramp", ramp);
-  if (rate > 0 && impl_->board.is_there() && rate > impl_->board.largest_rate()) {
+  if (rate > 0 && impl_->board.is_there() && rate > impl_->board.max_rate()) {
     throw BadRequest("the largest rate of '" + impl_->law + "' is " +
-                     core::number_text(impl_->board.largest_rate()) + ", not " +
+                     core::number_text(impl_->board.max_rate()) + ", not " +
                      core::number_text(rate));
   }
   return impl_->request(rate, ramp);

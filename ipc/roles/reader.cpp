@@ -150,7 +150,7 @@ SampleStatus Reader::sample_point(const ipc::LawPoint& point, const StateRef& ou
                                   bool is_executed) noexcept {
   ipc::Sampler::Place place;
   if (sampler_->all_linear() && sampler_->fits(out) &&
-      sampler_->find_at_hand(point.stream, is_executed, place)) {
+      sampler_->find_current(point.stream, is_executed, place)) {
     core::evaluate(place.order, place.coefficients, place.u + point.fraction, point.rates, out);
     return place.status;
   }

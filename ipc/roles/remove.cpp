@@ -77,10 +77,10 @@ void retire(const Removable& file) noexcept {
 /// Removes the regions of these kinds under a stream's name, or under that of a law's commander.
 void remove_regions(const std::string& stream, std::span<const RegionKind> kinds,
                     const Trust& trust) {
-  const bool stands = std::ranges::any_of(kinds, [&](RegionKind kind) {
+  const bool exists = std::ranges::any_of(kinds, [&](RegionKind kind) {
     return region_exists(stream, kind) || std::filesystem::exists(lock_path(stream, kind));
   });
-  if (!stands) throw NoSuchStream("there is no stream '" + stream + "'");
+  if (!exists) throw NoSuchStream("there is no stream '" + stream + "'");
   std::vector<OwnerLock> locks;
   std::vector<Removable> files;
   try {

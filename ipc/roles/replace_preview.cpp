@@ -48,7 +48,7 @@ ReplacementPlanner::ReplacementPlanner(const KnotBoardReader& board,
       plan_(board.dimensions(), core::with_kinds(options, kinds)),
       search_(board.dimensions(), plan_.window().options(),
               {.is_live = live.has_value(),
-               .min_entry = live ? live->min_entry : Time::zero(),
+               .least_entry = live ? live->least_entry : Time::zero(),
                .keeps_limits = live && beyond == Beyond::enter,
                .checks_stops = live && beyond != Beyond::report}),
       state_(board.dimensions()),
@@ -116,7 +116,7 @@ void ReplacementPlanner::take_segments(std::size_t end, ReplacePreview& out) {
 /// Searches for the plan's entry and adds it. `is_last`: no newer waypoints come.
 bool ReplacementPlanner::search(bool is_last, ReplacePreview& out) {
   const bool is_live = search_.options().is_live;
-  if (is_live) shown_.look(plan_.window().options().stop_time);
+  if (is_live) shown_.look(plan_.window().options().stop_length);
   int tries = kAllCandidates;
   const core::EntryBegin from{plan_.origin(), is_live ? &shown_.limits() : nullptr};
   if (search_.search(plan_, from, is_last, tries) != core::PlanSearch::Outcome::found) return false;

@@ -60,14 +60,14 @@ struct Attachment {
   Refusals refused;
   ipc::Word refusals_seen;
   ipc::Word excesses_seen;
-  bool is_excess_told = false;
-  std::array<bool, ipc::kRefusalReasons> told{};  ///< by Refusal
+  bool is_excess_reported = false;
+  std::array<bool, ipc::kRefusalReasons> reported{};  ///< by Refusal
 
   Attachment(RingView producer, ipc::OwnedBoard own)
       : ring(std::move(producer)),
         board(std::move(own)),
         solver(ring.reader, board.writer, board.reader, ipc::window_options(board.header),
-               ipc::ingest_limits(ring.header), ipc::dimension_kinds(ring.header),
+               ipc::interval_range(ring.header), ipc::dimension_kinds(ring.header),
                ipc::live_options(board.header), ipc::beyond(board.header)),
         refusals_seen(solver.summary().refused),
         excesses_seen(solver.summary().exceeding) {
@@ -307,20 +307,20 @@ void Solver::take_first_refusals(std::vector<ItemRefusal>& out) {
   at.refusals_seen = at.solver.summary().refused;
   at.refusals.look(at.board.reader, at.ring.reader, at.refused);
   for (const ItemRefusal& refusal : at.refused.items) {
-    bool& told = at.told[static_cast<std::size_t>(refusal.reason) % at.told.size()];
-    if (!told) out.push_back(refusal);
-    told = true;
+    bool& reported = at.reported[static_cast<std::size_t>(refusal.reason) % at.reported.size()];
+    if (!reported) out.push_back(refusal);
+    reported = true;
   }
 }
 
 std::optional<LimitExcess> Solver::take_first_excess() noexcept {
-  if (!attached() || impl_->attachment->is_excess_told) return std::nullopt;
+  if (!attached() || impl_->attachment->is_excess_reported) return std::nullopt;
   Attachment& at = *impl_->attachment;
   const ipc::Summary& summary = at.solver.summary();
   while (at.excesses_seen < summary.exceeding) {
     const auto excess = at.board.reader.excess(summary, at.excesses_seen++);
-    at.is_excess_told = excess && !excess->is_refused;
-    if (at.is_excess_told) return excess;
+    at.is_excess_reported = excess && !excess->is_refused;
+    if (at.is_excess_reported) return excess;
   }
   return std::nullopt;
 }

@@ -32,15 +32,15 @@ void come_to_rest(State& state) noexcept;
 /// The latest time of a change that begins at rest where a time law holds the stream, at `rest`:
 /// what has settled, and what a producer that wants a change as soon as possible adds as its
 /// margin.
-[[nodiscard]] inline Time latest_from_rest(Time rest, Time settled, Time freeze_ahead) noexcept {
-  return std::max(settled, rest + 10 * freeze_ahead);
+[[nodiscard]] inline Time latest_from_rest(Time rest, Time settled, Time settle_ahead) noexcept {
+  return std::max(settled, rest + 10 * settle_ahead);
 }
 
 /// Whether a replacement or a stop at t begins at rest where a time law holds the stream, at
 /// `rest`; t may also be earlier.
 [[nodiscard]] inline bool begins_at_rest(Time t, Time rest, Time settled,
-                                         Time freeze_ahead) noexcept {
-  return rest <= settled && t <= latest_from_rest(rest, settled, freeze_ahead);
+                                         Time settle_ahead) noexcept {
+  return rest <= settled && t <= latest_from_rest(rest, settled, settle_ahead);
 }
 
 /// How a run begins that cuts the curve.

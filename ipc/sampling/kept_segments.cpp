@@ -11,9 +11,9 @@ KeptSegments::KeptSegments(std::size_t dimensions, bool smooths)
 
 bool KeptSegments::is_confirmed(const KnotBoardReader& board, const Summary& summary) noexcept {
   if (confirmed_ == summary.revision) return true;
-  const bool stands = current().is_current(board, summary);
-  if (stands) confirm(summary);
-  return stands;
+  const bool is_valid = current().is_current(board, summary);
+  if (is_valid) confirm(summary);
+  return is_valid;
 }
 
 /// Makes `copy` the current copy, and confirms it. It must be part of the summary's revision.
@@ -28,9 +28,9 @@ void KeptSegments::confirm(const Summary& summary) noexcept {
   settled_until_ = summary.settled_until;
   const BoardSegment& own = current();
   const bool moves = own.kind() != SegmentKind::stop && own.kind() != SegmentKind::hold;
-  at_hand_ = {.left = own.left(),
-              .right = moves ? own.right() : own.left(),
-              .is_finished = summary.finished};
+  current_interval_ = {.left = own.left(),
+                       .right = moves ? own.right() : own.left(),
+                       .is_finished = summary.finished};
 }
 
 bool KeptSegments::take(const KnotBoardReader& board, const Summary& summary,

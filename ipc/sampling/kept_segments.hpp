@@ -42,7 +42,9 @@ class KeptSegments {
   /// The newest revision that the current copy is known to be part of; 0: none.
   [[nodiscard]] Word confirmed_by() const noexcept { return confirmed_; }
 
-  [[nodiscard]] const CurrentInterval& at_hand() const noexcept { return at_hand_; }
+  [[nodiscard]] const CurrentInterval& current_interval() const noexcept {
+    return current_interval_;
+  }
 
   /// settled_until of that revision, as last seen.
   [[nodiscard]] Time settled_until() const noexcept { return settled_until_; }
@@ -74,7 +76,7 @@ class KeptSegments {
 
   Word confirmed_ = 0;    ///< a copy of current_->known_by; 0: none
   Time settled_until_{};  ///< settled_until of that revision, as last seen
-  CurrentInterval at_hand_;
+  CurrentInterval current_interval_;
   std::vector<Kept> copies_;                  ///< kMost of them, and a spare one
   std::array<std::uint8_t, kMost> places_{};  ///< index into copies_, by segment number mod kMost
   std::size_t spare_ = kMost;                 ///< index of the spare copy

@@ -41,12 +41,12 @@ Word number_near(const BoardSegment& copy, Time t) noexcept {
 Word number_by_hint(const KnotBoardReader& board, const Summary& summary, Time t) noexcept {
   Word low = summary.first;
   Word high = summary.newest + 1;
-  const auto is_behind = [&](Word number) { return board.time_hint(number) > t; };
+  const auto is_after = [&](Word number) { return board.time_hint(number) > t; };
   const Word guess = guess_by_pace(board, summary, t);
-  if (is_behind(guess)) {
+  if (is_after(guess)) {
     high = guess;
     for (Word step = 1; step <= high - low; step *= 2) {
-      if (!is_behind(high - step)) {
+      if (!is_after(high - step)) {
         low = high - step + 1;
         break;
       }
@@ -55,7 +55,7 @@ Word number_by_hint(const KnotBoardReader& board, const Summary& summary, Time t
   } else {
     low = guess + 1;
     for (Word step = 1; step <= high - low; step *= 2) {
-      if (is_behind(low + step - 1)) {
+      if (is_after(low + step - 1)) {
         high = low + step - 1;
         break;
       }
@@ -64,7 +64,7 @@ Word number_by_hint(const KnotBoardReader& board, const Summary& summary, Time t
   }
   while (low < high) {
     const Word middle = low + (high - low) / 2;
-    if (is_behind(middle)) {
+    if (is_after(middle)) {
       high = middle;
     } else {
       low = middle + 1;

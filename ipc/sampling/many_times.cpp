@@ -41,7 +41,7 @@ bool Sampler::evaluate_many(std::span<const Time> times, const SampleBlock& out)
   const std::size_t dimensions = board_->dimensions();
   const std::size_t stride = count(out.derivatives) * dimensions;
   for (std::size_t i = 0; i < times.size();) {
-    const Found found = goes_on(times[i]) ? Found::segment : locate(times[i]);
+    const Found found = continues(times[i]) ? Found::segment : locate(times[i]);
     if (found == Found::torn) return false;
     if (found == Found::segment) {
       const std::size_t evaluated = evaluate_moving(times, i, stride, out);
@@ -69,14 +69,15 @@ std::size_t Sampler::evaluate_moving(std::span<const Time> times, std::size_t fi
                                      std::size_t stride, const SampleBlock& out) noexcept {
   if (!all_linear_) return 0;
   const BoardSegment& own = kept_.current();
-  const Time settled_until = kept_.at_hand().is_finished ? Time::max() : summary_.settled_until;
+  const Time settled_until =
+      kept_.current_interval().is_finished ? Time::max() : summary_.settled_until;
   // Not initialised, because that takes as long as the lookup.
   std::array<double, 16> u;  // NOLINT(*-member-init)
   std::size_t n = 0;
   while (n < u.size() && first + n < times.size()) {
     const Time t = times[first + n];
-    if (t < kept_.at_hand().left || t >= kept_.at_hand().right) break;
-    u[n] = seconds_after(kept_.at_hand().left, t);
+    if (t < kept_.current_interval().left || t >= kept_.current_interval().right) break;
+    u[n] = seconds_after(kept_.current_interval().left, t);
     out.status[first + n] = t < settled_until ? SampleStatus::settled : SampleStatus::provisional;
     ++n;
   }

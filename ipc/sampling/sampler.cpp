@@ -35,16 +35,18 @@ Sampler::Sampler(const KnotBoardReader& board, StreamClock clock, DimensionKinds
 inline SampleStatus Sampler::find(Time t, const StateRef& out) noexcept {
   if (is_gone()) return SampleStatus::retired;
   const Look look = board_->look();
-  const bool is_at_hand = look.revision == kept_.confirmed_by() && t >= kept_.at_hand().left &&
-                          t < kept_.at_hand().right;
-  if (!is_at_hand && (look.revision != kept_.confirmed_by() || !goes_on(t))) return look_up(t, out);
+  const bool is_in_current = look.revision == kept_.confirmed_by() &&
+                             t >= kept_.current_interval().left &&
+                             t < kept_.current_interval().right;
+  if (!is_in_current && (look.revision != kept_.confirmed_by() || !continues(t)))
+    return look_up(t, out);
   summary_.settled_until = look.settled_until;
   kept_.see_settled(look.settled_until);
   const BoardSegment& own = kept_.current();
   core::evaluate(own.order(), own.coefficients(),
-                 seconds_after(kept_.at_hand().left, t) + fraction_, out);
+                 seconds_after(kept_.current_interval().left, t) + fraction_, out);
   if (!all_linear_) kinds_.normalise(out);
-  if (kept_.at_hand().is_finished) return SampleStatus::settled;
+  if (kept_.current_interval().is_finished) return SampleStatus::settled;
   return t < look.settled_until ? SampleStatus::settled : SampleStatus::provisional;
 }
 
@@ -69,12 +71,12 @@ SampleStatus Sampler::sample(Time t, State& out) noexcept {
 
 /// If t is after the current segment, makes the next segment of the same revision the current one.
 /// Returns whether t is in that segment and it is not a stop or a hold.
-bool Sampler::goes_on(Time t) noexcept {
+bool Sampler::continues(Time t) noexcept {
   const BoardSegment& own = kept_.current();
   if (kept_.confirmed_by() != summary_.revision || !own.is_there() || t < own.right()) return false;
   const Word next = own.next();
   if (next > summary_.newest || !kept_.take(*board_, summary_, next)) return false;
-  return t >= kept_.at_hand().left && t < kept_.at_hand().right;
+  return t >= kept_.current_interval().left && t < kept_.current_interval().right;
 }
 
 /// Copies the bounds of a revision. Sets `revised_` if it, or an earlier one that this reader has

@@ -87,7 +87,7 @@ class Sampler {
   /// Finds the polynomial that sample() or preview() at t would evaluate, if it is the one used
   /// last and nothing has been published since. Returns false if it is not known so easily: then
   /// sample. O(1), without a call.
-  [[nodiscard]] bool find_at_hand(Time t, bool is_executed, Place& out) noexcept;
+  [[nodiscard]] bool find_current(Time t, bool is_executed, Place& out) noexcept;
 
   /// Whether each span has one value per dimension.
   [[nodiscard]] bool fits(const StateRef& out) const noexcept {
@@ -137,7 +137,7 @@ class Sampler {
   enum class Found { segment, before_first, torn };
 
   [[nodiscard]] bool is_gone() const noexcept { return board_->retired() && !follows_retired_; }
-  [[nodiscard]] bool goes_on(Time t) noexcept;
+  [[nodiscard]] bool continues(Time t) noexcept;
   [[nodiscard]] Found locate(Time t) noexcept;
   [[nodiscard]] bool spans(const BoardSegment& segment, Time t) const noexcept;
   void read(const BoardSegment& segment, double u, const StateRef& out) const noexcept;
@@ -169,9 +169,9 @@ class Sampler {
   std::vector<double> end_acceleration_;    ///< scratch
 };
 
-inline bool Sampler::find_at_hand(Time t, bool is_executed, Place& out) noexcept {
+inline bool Sampler::find_current(Time t, bool is_executed, Place& out) noexcept {
   const Look look = board_->look();
-  const KeptSegments::CurrentInterval& interval = kept_.at_hand();
+  const KeptSegments::CurrentInterval& interval = kept_.current_interval();
   const bool is_known = look.revision == kept_.confirmed_by() && t >= interval.left &&
                         t < interval.right && !revised_ && !is_gone();
   if (!is_known) return false;

@@ -12,7 +12,7 @@ namespace splinecast::ipc {
 void PublishedCurve::look_at_shown() noexcept {
   if (!is_live()) return;
   if (!shown_.is_restored()) restore_shown();
-  shown_.look(window().options().stop_time);
+  shown_.look(window().options().stop_length);
 }
 
 void PublishedCurve::restore_shown() noexcept {

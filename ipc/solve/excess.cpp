@@ -125,7 +125,7 @@ Followed PublishedCurve::follow_from_rest(const Waypoint& waypoint, Word item, T
   plan_.set_searching(false);
   is_prepared_ = false;
   const Time rest = writer_.rest();
-  const Time until = rest + search_.options().min_entry;
+  const Time until = rest + search_.options().least_entry;
   plan_.give_up_until(until);
   const Time begin = std::max({settled, rest, waypoint.time - core::EntrySearch::kLongest});
   if (waypoint.time <= std::max(until, begin) || !has_room_to_enter(keep)) {

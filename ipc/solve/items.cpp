@@ -74,7 +74,7 @@ void StreamSolver::begin_run(Time t, const RunBegin& how) noexcept {
 /// Ends a stop that is executed when the law holds the machine.
 void StreamSolver::rest_where_held() noexcept {
   if (!can_rest() || *step_.held_from > step_.settled_until || summary_.finished) return;
-  const Time latest = latest_from_rest(*step_.held_from, step_.settled_until, live_->freeze_ahead);
+  const Time latest = latest_from_rest(*step_.held_from, step_.settled_until, live_->settle_ahead);
   if (curve_.is_stopping(*step_.held_from, latest))
     begin_run(*step_.held_from, {.has_waypoints = false, .is_from_rest = true});
 }
@@ -131,10 +131,10 @@ std::optional<Refusal> StreamSolver::time_refusal(Time time) const noexcept {
   }
   const Time newest = curve_.plan().newest_time();
   // A run may begin after the time of its first waypoints, or less than an interval before it.
-  if (curve_.is_stop() && time - newest < limits_.min_interval) return std::nullopt;
+  if (curve_.is_stop() && time - newest < intervals_.least) return std::nullopt;
   const Time earliest = is_starved() ? step_.settled_until : newest;
-  const auto status = judge_interval(time - newest, limits_);
-  if (status == AppendStatus::too_far_apart && time - earliest > limits_.max_interval) {
+  const auto status = judge_interval(time - newest, intervals_);
+  if (status == AppendStatus::too_far_apart && time - earliest > intervals_.most) {
     return Refusal::too_far_apart;
   }
   if (status != AppendStatus::accepted && status != AppendStatus::too_far_apart) {
@@ -207,7 +207,7 @@ void StreamSolver::take_replacement(Word number) noexcept {
   // A replacement is never too late. A stop is a revision of its own, which is committed sooner
   // than a full batch.
   const bool rests = can_rest() && begins_at_rest(item_.time, *step_.held_from, step_.settled_until,
-                                                  live_->freeze_ahead);
+                                                  live_->settle_ahead);
   const Time t = rests ? *step_.held_from : time_of_cut(item_.time);
   const bool has_begun = curve_.has_begun();  // else there is nothing to replace
   if (has_begun && !is_time_in_range(t)) {
@@ -227,7 +227,7 @@ void StreamSolver::take_replacement(Word number) noexcept {
   outcomes_.note_in_force(number, is_stop(item_) ? OutcomeWay::stop : OutcomeWay::entry, t);
   // A stop after another one changes nothing.
   if (is_stop(item_) && curve_.is_stop() && t >= curve_.plan().newest_time()) return;
-  const RunBegin how{.blend = std::clamp(item_.blend, Time::zero(), limits_.max_interval),
+  const RunBegin how{.blend = std::clamp(item_.blend, Time::zero(), intervals_.most),
                      .has_waypoints = !is_stop(item_),
                      .is_from_rest = rests};
   begin_run(t, how);

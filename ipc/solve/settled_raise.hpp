@@ -14,30 +14,30 @@ class SettledRaise {
   /// Raises nothing.
   SettledRaise() = default;
 
-  /// `stands` is the current value of the word. Never raises the word to `limit` or later: there
+  /// `current`: the value of the word. Never raises the word to `limit` or later: there
   /// the solver itself has work to do, because the stream starves, comes to rest, or decides its
   /// start.
-  SettledRaise(Word& word, Time stands, Time freeze_ahead, Time limit) noexcept
-      : word_(&word), stands_(stands), freeze_ahead_(freeze_ahead), limit_(limit) {}
+  SettledRaise(Word& word, Time current, Time settle_ahead, Time limit) noexcept
+      : word_(&word), current_(current), settle_ahead_(settle_ahead), limit_(limit) {}
 
   /// Stores at `now` that the curve is settled until now + freeze-ahead. Returns false, and stores
   /// nothing, if a step is needed.
   bool raise(Time now) noexcept {
-    if (word_ == nullptr || now >= limit_ - freeze_ahead_) return false;
-    const Time t = now + freeze_ahead_;
-    if (t <= stands_) return true;
-    stands_ = t;
+    if (word_ == nullptr || now >= limit_ - settle_ahead_) return false;
+    const Time t = now + settle_ahead_;
+    if (t <= current_) return true;
+    current_ = t;
     store(*word_, to_word(t), std::memory_order_release);
     return true;
   }
 
   /// The time from one raise until the next one is due.
-  [[nodiscard]] Time interval() const noexcept { return freeze_ahead_ / 2; }
+  [[nodiscard]] Time interval() const noexcept { return settle_ahead_ / 2; }
 
  private:
   Word* word_ = nullptr;
-  Time stands_{};
-  Time freeze_ahead_{};
+  Time current_{};
+  Time settle_ahead_{};
   Time limit_{};
 };
 

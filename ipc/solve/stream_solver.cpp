@@ -16,7 +16,7 @@ constexpr std::size_t kMaxBatch = 256;
 
 /// Knots that a revision may write in addition to one per item: the open ones, the one before them,
 /// those at a cut, and those of an entry.
-constexpr std::size_t changed_besides(std::size_t settle) noexcept { return settle + 6; }
+constexpr std::size_t changed_knots(std::size_t settle) noexcept { return settle + 6; }
 
 /// On a recorded stream, which does not depend on the clock, one step out of this many is timed.
 constexpr Word kTimedEvery = 16;
@@ -28,27 +28,27 @@ constexpr std::size_t kAddedByItem = 4 + PublishedCurve::kAddedByStop;
 }  // namespace
 
 std::size_t StreamSolver::min_capacity(std::size_t settle) noexcept {
-  return 2 * changed_besides(settle) + 2;
+  return 2 * changed_knots(settle) + 2;
 }
 
 StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& board,
                            const KnotBoardReader& published, const core::WindowOptions& window,
-                           const IngestLimits& limits, DimensionKinds kinds,
+                           const IntervalRange& intervals, DimensionKinds kinds,
                            const std::optional<LiveOptions>& live, Beyond beyond)
     : ring_(&ring),
       board_(&board),
       published_(&published),
-      limits_(limits),
+      intervals_(intervals),
       live_(live),
       beyond_(beyond),
       curve_(board, published, window, std::move(kinds),
              {.is_live = live.has_value(),
-              .min_entry = live ? live->min_entry : Time::zero(),
-              .notice = live ? live->freeze_ahead : Time::zero(),
+              .least_entry = live ? live->least_entry : Time::zero(),
+              .notice = live ? live->settle_ahead : Time::zero(),
               .keeps_limits = live && beyond == Beyond::enter,
               .checks_stops = live && beyond != Beyond::report}),
       outcomes_(board, published),
-      max_batch_(std::min(kMaxBatch, board.capacity() / 2 - changed_besides(window.settle))),
+      max_batch_(std::min(kMaxBatch, board.capacity() / 2 - changed_knots(window.settle))),
       item_(ring.dimensions()),
       replacements_(ring) {
   if (board.capacity() < min_capacity(window.settle)) {
@@ -86,7 +86,7 @@ Time StreamSolver::due() const noexcept {
   const bool settles = live_ && !summary_.finished && summary_.newest > 0 &&
                        summary_.settled_until < curve_.end_of_motion();
   const bool waits = live_ && seen_ != summary_.consumed;
-  return settles || waits ? settled_at_ + live_->freeze_ahead / 2 : Time::max();
+  return settles || waits ? settled_at_ + live_->settle_ahead / 2 : Time::max();
 }
 
 void StreamSolver::prefetch() const noexcept {
@@ -101,12 +101,12 @@ SettledRaise StreamSolver::settled_raise() const noexcept {
   if (!settles || is_busy || seen_ != summary_.consumed) return {};
   const Time limit =
       std::min({curve_.plan().newest_time(), curve_.end_of_motion(), curve_.start_decision()});
-  return {board_->settled_word(), summary_.settled_until, live_->freeze_ahead, limit};
+  return {board_->settled_word(), summary_.settled_until, live_->settle_ahead, limit};
 }
 
 StepResult StreamSolver::step(const Clock& clock) noexcept {
   if (is_damaged()) return {.damaged = true};
-  if (live_) summary_.settled_until = std::max(summary_.settled_until, board_->take_up_settled());
+  if (live_) summary_.settled_until = std::max(summary_.settled_until, board_->resume_settled());
   step_.is_timed = live_ || board_->revision() % kTimedEvery == 0;
   const Time was_due = due();
   const Time began = step_.is_timed ? clock.now() : Time::min();
@@ -178,7 +178,7 @@ void StreamSolver::freeze(const Clock& clock, Time now) noexcept {
   step_.settled_until = summary_.settled_until;
   step_.has_starved = false;
   if (!live_) return;
-  step_.settled_until = std::max(step_.settled_until, clock.latest(now, live_->freeze_ahead));
+  step_.settled_until = std::max(step_.settled_until, clock.latest(now, live_->settle_ahead));
   step_.begins_held = false;
   step_.held_from.reset();
   if (const auto held = clock.held()) step_.held_from = *held + Time(1);

@@ -27,9 +27,9 @@ namespace splinecast::ipc {
 
 /// How a live stream is solved.
 struct LiveOptions {
-  Time freeze_ahead{5'000'000};  ///< the curve before now + this never changes
+  Time settle_ahead{5'000'000};  ///< the curve before now + this never changes
   Time history{1'000'000'000};   ///< segments that end after now − this are not overwritten
-  Time min_entry{5'000'000};     ///< length of the shortest entry
+  Time least_entry{5'000'000};   ///< length of the shortest entry
   bool follows_law = false;      ///< stream time passes by a time law
 };
 
@@ -38,7 +38,7 @@ struct LiveOptions {
 /// and ThreadSanitizer run the production code. Allocates only when constructed; `step` never
 /// blocks and makes no system call except the clock's.
 ///
-/// On a live stream everything before `settled_until` = now + freeze_ahead is frozen before a step
+/// On a live stream everything before `settled_until` = now + settle_ahead is frozen before a step
 /// takes an item, up to the right end of the segment that contains that time. If a waypoint comes
 /// when the newest knot has been frozen, an entry leads from settled_until onto the waypoints; an
 /// entry also leads onto the waypoints of a replacement: see PublishedCurve. Directly before the
@@ -87,7 +87,7 @@ class StreamSolver {
   /// curve on the board.
   StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& board,
                const KnotBoardReader& published, const core::WindowOptions& window,
-               const IngestLimits& limits, DimensionKinds kinds = {},
+               const IntervalRange& intervals, DimensionKinds kinds = {},
                const std::optional<LiveOptions>& live = std::nullopt,
                Beyond beyond = Beyond::report);
 
@@ -210,7 +210,7 @@ class StreamSolver {
   const WaypointRingReader* ring_;
   KnotBoardWriter* board_;
   const KnotBoardReader* published_;
-  IngestLimits limits_;
+  IntervalRange intervals_;
   std::optional<LiveOptions> live_;
   Beyond beyond_;
   PublishedCurve curve_;

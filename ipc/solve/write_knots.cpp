@@ -204,7 +204,7 @@ void KnotWriter::write_stop(const core::Plan& plan, bool ends_entry, KnotRecord&
     (void)plan.window().write_stop(values_);
     stop_ = plan.ended()->rest - record.time;
   } else if (ends_entry) {
-    stop_ = plan.window().stop_time(record.acceleration);
+    stop_ = plan.window().stop_length(record.acceleration);
   } else {
     stop_ = plan.window().write_stop(values_);
   }

@@ -32,22 +32,22 @@ void StreamSweep::look_around() {
 void StreamSweep::look_for_names() {
   to_take_.clear();
   given_up_.clear();
-  std::set<std::string> standing = regions_.streams();
+  std::set<std::string> existing = regions_.streams();
   // The ring of a law is made by its solver, once there is a commander.
-  for (const auto& [law, commanders] : regions_.commanders().names()) standing.insert(law);
-  for (const std::string& stream : standing) {
+  for (const auto& [law, commanders] : regions_.commanders().names()) existing.insert(law);
+  for (const std::string& stream : existing) {
     if (is_wanted(stream)) members_.try_emplace(stream);
   }
   std::erase_if(members_, [&](const auto& entry) {
     const auto& [stream, member] = entry;
-    const bool stands = standing.contains(stream);
-    if (member.state == State::solved || stands || member.is_named) return false;
-    tell(SweepNews::gone, stream, nullptr, {});
+    const bool exists = existing.contains(stream);
+    if (member.state == State::solved || exists || member.is_named) return false;
+    notify(SweepNews::gone, stream, nullptr, {});
     return true;
   });
   for (auto& [stream, member] : members_) {
-    const bool stands = standing.contains(stream);
-    if (!stands && !member.is_named) continue;
+    const bool exists = existing.contains(stream);
+    if (!exists && !member.is_named) continue;
     if (member.state == State::given_up) given_up_.push_back(stream);
     if (is_to_be_tried(member)) to_take_.push_back(stream);
   }

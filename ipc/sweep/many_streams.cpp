@@ -24,9 +24,9 @@ std::size_t most_streams(std::size_t descriptors_each) {
 }  // namespace
 
 StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions options,
-                         TellNews tell, Time pause)
+                         NotifyNews notify, Time pause)
     : options_(std::move(options)),
-      tell_(std::move(tell)),
+      notify_(std::move(notify)),
       most_owned_(most_streams(kDescriptorsPerStream)),
       schedule_(pause) {
   for (const std::string& text : wanted) {
@@ -49,13 +49,13 @@ void StreamSweep::become(const std::string& stream, Member& member, State state,
                          const Solver* solver, std::string_view why) noexcept {
   const bool is_news = member.state != state;
   member.state = state;
-  if (is_news) tell(news, stream, solver, why);
+  if (is_news) notify(news, stream, solver, why);
 }
 
-void StreamSweep::tell(SweepNews news, const std::string& stream, const Solver* solver,
-                       std::string_view why) noexcept {
+void StreamSweep::notify(SweepNews news, const std::string& stream, const Solver* solver,
+                         std::string_view why) noexcept {
   try {
-    tell_(news, stream, solver, why);
+    notify_(news, stream, solver, why);
   } catch (...) {
     return;  // a message that fails changes nothing for the streams
   }

@@ -34,8 +34,8 @@ class StreamSweep {
   /// Each of `wanted` is a stream's name or a pattern, see is_pattern(). From now on no other
   /// process can solve a named stream, even while it has no producer. Solves all streams with these
   /// options. Throws BadRequest for invalid options or names. The constructor may already call
-  /// `tell`. `pause` is the time between two sweeps.
-  StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, TellNews tell,
+  /// `notify`. `pause` is the time between two sweeps.
+  StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, NotifyNews notify,
               Time pause = std::chrono::milliseconds(1));
 
   /// Polls every stream once. Returns whether one of them still has work to do: sweep again at
@@ -115,21 +115,21 @@ class StreamSweep {
   void drop(const std::string& stream, Member& member, const std::exception& error);
 
   // Stepping those that have work to do: stepping.cpp.
-  void take_up(const Clock& clock);
+  void attach_waiting(const Clock& clock);
   void collect_calling();
-  void prefetch_behind(std::size_t i) const noexcept;
+  void prefetch_next(std::size_t i) const noexcept;
   [[nodiscard]] bool serve(std::size_t index, const Clock& clock);
   void release_detached();
 
   // States and reports.
   void become(const std::string& stream, Member& member, State state, SweepNews news,
               const Solver* solver = nullptr, std::string_view why = {}) noexcept;
-  void tell(SweepNews news, const std::string& stream, const Solver* solver,
-            std::string_view why) noexcept;
+  void notify(SweepNews news, const std::string& stream, const Solver* solver,
+              std::string_view why) noexcept;
   [[nodiscard]] std::size_t owned() const noexcept;
 
   SolverOptions options_;
-  TellNews tell_;
+  NotifyNews notify_;
   std::vector<std::string> patterns_;
   RegionWatch regions_;
   std::optional<Word> seen_{};  ///< version of regions_ when the names were listed last

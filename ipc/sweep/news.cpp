@@ -7,28 +7,28 @@
 
 namespace splinecast::ipc {
 
-void ReportedNews::report(Solver& solver, const TellNews& tell, Scratch& scratch) noexcept try {
+void ReportedNews::report(Solver& solver, const NotifyNews& notify, Scratch& scratch) noexcept try {
   const std::string& stream = solver.stream();
   solver.take_first_refusals(scratch.refused);
   for (const ItemRefusal& refusal : scratch.refused) {
-    tell(SweepNews::refused, stream, &solver, to_string(refusal));
+    notify(SweepNews::refused, stream, &solver, to_string(refusal));
   }
   if (const auto excess = solver.take_first_excess()) {
-    tell(SweepNews::beyond_limits, stream, &solver, solver.in_words(*excess));
+    notify(SweepNews::beyond_limits, stream, &solver, solver.in_words(*excess));
   }
   scratch.faults.clear();
   solver.take_commander_faults(scratch.faults);
   for (const std::string& fault : scratch.faults) {
-    tell(SweepNews::commander, stream, &solver, fault);
+    notify(SweepNews::commander, stream, &solver, fault);
   }
   if (!solver.attached()) return;
   const Summary& summary = Internals::summary(solver);
   const Following following = summary.following();
   if (std::exchange(following_, following) != following) {
-    tell(SweepNews::following, stream, &solver, {});
+    notify(SweepNews::following, stream, &solver, {});
   }
   if (summary.finished && !std::exchange(was_finished_, true)) {
-    tell(SweepNews::finished, stream, &solver, {});
+    notify(SweepNews::finished, stream, &solver, {});
   }
 } catch (const std::exception&) {
   return;  // a message that fails changes nothing for the stream

@@ -31,8 +31,8 @@ enum class SweepNews : std::uint8_t {
 
 /// Called with news. `solver` is not null if the stream is solved here; `why` is set for
 /// `postponed`, `given_up`, `refused`, `beyond_limits` and `commander`. Exceptions are ignored.
-using TellNews = std::function<void(SweepNews news, const std::string& stream, const Solver* solver,
-                                    std::string_view why)>;
+using NotifyNews = std::function<void(SweepNews news, const std::string& stream,
+                                      const Solver* solver, std::string_view why)>;
 
 /// What has been reported of a solver since it attached. One thread uses it.
 class ReportedNews {
@@ -45,7 +45,7 @@ class ReportedNews {
 
   /// Reports what a step has brought: first refusals, the first excess, faults of commanders and
   /// stoppers, a change of following, the finish. Allocates only if there are news.
-  void report(Solver& solver, const TellNews& tell, Scratch& scratch) noexcept;
+  void report(Solver& solver, const NotifyNews& notify, Scratch& scratch) noexcept;
 
  private:
   bool was_finished_ = false;

@@ -17,21 +17,21 @@ bool StreamSweep::sweep(const Clock& clock) {
   now_ = clock.now();
   try {
     regions_.look();
-    take_up(clock);
+    attach_waiting(clock);
   } catch (const std::exception&) {
     looks_again_ = true;  // the process lacks memory or descriptors; solved streams continue
   }
   collect_calling();
   bool has_more = false;
   for (std::size_t i = 0; i < calling_.size(); ++i) {
-    prefetch_behind(i);
+    prefetch_next(i);
     has_more = serve(calling_[i], clock) || has_more;
   }
   if (has_detached_) release_detached();
   return has_more || !to_take_.empty();
 }
 
-void StreamSweep::take_up(const Clock& clock) {
+void StreamSweep::attach_waiting(const Clock& clock) {
   // Does not look while there are streams to attach to: attaching creates files, and each of them
   // would trigger another look.
   if (to_take_.empty() && now_ >= next_look_) {
@@ -61,7 +61,7 @@ void StreamSweep::collect_calling() {
 
 /// Prefetches the memory for the steps after the i-th one while that one runs: with many streams
 /// the caches hold nothing of a stream from one sweep to the next.
-void StreamSweep::prefetch_behind(std::size_t i) const noexcept {
+void StreamSweep::prefetch_next(std::size_t i) const noexcept {
   const auto ask = [&](std::size_t ahead, Internals::Stage stage) {
     if (i + ahead >= calling_.size()) return;
     Internals::prefetch(*served_[calling_[i + ahead]].solver, stage);
@@ -86,7 +86,7 @@ bool StreamSweep::serve(std::size_t index, const Clock& clock) {
     return false;
   }
   watches_[index] = {.solver = Internals::watch(*served.solver), .active = now_};
-  served.news.report(*served.solver, tell_, scratch_);
+  served.news.report(*served.solver, notify_, scratch_);
   return result.missed || watches_[index].solver.has_items();
 }
 

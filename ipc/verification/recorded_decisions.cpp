@@ -10,7 +10,7 @@
 namespace splinecast::ipc {
 namespace {
 
-bool is_behind(const SegmentCopy& before, const SegmentCopy& segment) noexcept {
+bool is_after(const SegmentCopy& before, const SegmentCopy& segment) noexcept {
   if (segment.has_waypoint || segment.number != before.number + 1) return false;
   const bool follows_line = before.kind == SegmentKind::spline && !before.has_waypoint;
   const bool follows_entry = before.kind == SegmentKind::entry && before.origin.known > 0;
@@ -28,7 +28,7 @@ bool is_entry(const SegmentCopy& segment) noexcept {
 bool begins_run(const SegmentCopy& before, const SegmentCopy& segment,
                 std::optional<Word> run_item) noexcept {
   if (is_entry(segment)) return !run_item || *run_item != *segment.origin.item;
-  return segment.kind == SegmentKind::stop && !segment.has_waypoint && !is_behind(before, segment);
+  return segment.kind == SegmentKind::stop && !segment.has_waypoint && !is_after(before, segment);
 }
 
 Replacements::Replacements(const StreamRecord& record) : items_(record.items) {
@@ -56,8 +56,8 @@ std::optional<Time> Replacements::time_before(Word end) const noexcept {
   return item > items_.first() ? std::optional(items_.waypoint(item - 1).time) : std::nullopt;
 }
 
-bool RecordedDecisions::is_behind_entry(std::size_t i) const noexcept {
-  return i > 0 && is_behind(before(i), segments_[i]);
+bool RecordedDecisions::is_after_entry(std::size_t i) const noexcept {
+  return i > 0 && is_after(before(i), segments_[i]);
 }
 
 bool RecordedDecisions::is_ending(std::size_t i) const noexcept {

@@ -60,7 +60,7 @@ class RecordedDecisions {
   [[nodiscard]] bool is_entry(std::size_t i) const noexcept { return ipc::is_entry(segments_[i]); }
 
   /// Whether segment i is the straight line or the stop after an entry beyond the newest waypoint.
-  [[nodiscard]] bool is_behind_entry(std::size_t i) const noexcept;
+  [[nodiscard]] bool is_after_entry(std::size_t i) const noexcept;
 
   /// Whether segment i is the entry by which a curve ends at its last waypoint.
   [[nodiscard]] bool is_ending(std::size_t i) const noexcept;

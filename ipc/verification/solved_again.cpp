@@ -17,10 +17,10 @@ namespace splinecast::ipc {
 bool StreamReplay::solve_in_run(std::size_t s) {
   const SegmentCopy& segment = segments_[s];
   if (decisions_.is_entry(s)) return solve_entry(s);
-  if (decisions_.is_behind_entry(s)) return solve_behind_entry(s);
+  if (decisions_.is_after_entry(s)) return solve_after_entry(s);
   if (segment.kind == SegmentKind::slowed) return solve_slowed(s);
   if (segment.has_waypoint) return solve_on_target(s);
-  return segment.kind == SegmentKind::hold ? solve_hold_behind(s) : solve_state_stop(s);
+  return segment.kind == SegmentKind::hold ? solve_hold_after(s) : solve_state_stop(s);
 }
 
 /// Solves and compares a segment of the target, or the stop after its newest waypoint.
@@ -98,7 +98,7 @@ bool StreamReplay::solve_slowed(std::size_t s) {
 }
 
 /// Solves and compares a hold within a run. It begins at the uncut end of the segment before.
-bool StreamReplay::solve_hold_behind(std::size_t s) {
+bool StreamReplay::solve_hold_after(std::size_t s) {
   const SegmentCopy& segment = segments_[s];
   if (s == 0 || segment.left != natural_right_) {
     return differ(s, "left end", in_words(segment.left), in_words(natural_right_));
@@ -163,11 +163,11 @@ Time StreamReplay::stop_length_after(std::size_t s) const noexcept {
   const Instant from = extrapolation_.line_end_state();
   if (has_former_rules()) return former_stop_time(rules, from);
   std::size_t i = s + 1;
-  while (i < segments_.size() && i <= s + 2 && decisions_.is_behind_entry(i) &&
+  while (i < segments_.size() && i <= s + 2 && decisions_.is_after_entry(i) &&
          segments_[i].kind == SegmentKind::spline) {
     ++i;
   }
-  const bool is_there = i < segments_.size() && decisions_.is_behind_entry(i) &&
+  const bool is_there = i < segments_.size() && decisions_.is_after_entry(i) &&
                         segments_[i].kind == SegmentKind::stop;
   const bool is_shorter = is_there && i == s + 1;
   if (is_there && segments_[i].natural_right > from.time &&
@@ -205,7 +205,7 @@ bool StreamReplay::solve_entry(std::size_t s) {
 }
 
 /// Solves and compares the straight line or the stop after an entry beyond the newest waypoint.
-bool StreamReplay::solve_behind_entry(std::size_t s) {
+bool StreamReplay::solve_after_entry(std::size_t s) {
   const core::Plan& plan = target_.plan();
   const auto* const ahead = std::get_if<core::EnteringAhead>(&plan.end());
   if (ahead == nullptr) return differ(s, "kind", in_words(segments_[s].kind), "none");

@@ -64,11 +64,11 @@ class StreamReplay {
   bool solve_in_run(std::size_t s);
   bool solve_on_target(std::size_t s);
   bool solve_entry(std::size_t s);
-  bool solve_behind_entry(std::size_t s);
+  bool solve_after_entry(std::size_t s);
   bool solve_state_stop(std::size_t s);
   bool solve_stop(std::size_t s, const Instant& from, StopPart part);
   [[nodiscard]] Time stop_length_after(std::size_t s) const noexcept;
-  bool solve_hold_behind(std::size_t s);
+  bool solve_hold_after(std::size_t s);
   bool solve_slowed(std::size_t s);
   bool solve_path(std::size_t s);
   void solve_hold(std::size_t i);

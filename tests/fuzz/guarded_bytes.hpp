@@ -8,7 +8,7 @@
 #include <new>
 #include <span>
 
-#include "ipc/layout/separation.hpp"
+#include "ipc/memory/separation.hpp"
 
 namespace splinecast::fuzz {
 

@@ -98,7 +98,7 @@ void read(const std::string& name) {
   (void)reader.names();
 }
 
-void tell(const std::string& name) {
+void notify(const std::string& name) {
   const ipc::StreamInfo info = ipc::inspect(name);
   require(!apps::pretty(apps::to_json(info)).empty(), "info prints a report");
 }
@@ -122,7 +122,8 @@ ProducerOptions options_of(const std::string& name) {
           .kinds = ipc::dimensions_of(*header),
           .clock = ipc::stream_clock(*header),
           .start = ipc::start_condition(*header),
-          .limits = ipc::ingest_limits(*header),
+          .limits = {.min_interval = Time(header->min_interval),
+                     .max_interval = Time(header->max_interval)},
           .capacity = 4};
 }
 
@@ -190,7 +191,7 @@ void try_law(const std::string& law, const Script& script) {
   const std::string arm = law + ".arm";
   attempt([&] { command(law, script); });
   attempt([&] { follow(law, arm, script); });
-  attempt([&] { tell(arm); });
+  attempt([&] { notify(arm); });
   attempt([&] { command(law, script); });
   attempt([&] { remove_stream(arm); });
 }
@@ -201,7 +202,7 @@ void try_roles(const StreamImage& image) {
   const Files files(image);
   const std::string& name = files.name();
   attempt([&] { read(name); });
-  attempt([&] { tell(name); });
+  attempt([&] { notify(name); });
   attempt([&] { solve(name); });
   attempt([&] { produce(name, Script(image.script)); });
   attempt([&] { solve(name); });

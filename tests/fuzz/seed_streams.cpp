@@ -12,10 +12,10 @@
 #include "ipc/layout/board_control.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/request_control.hpp"
-#include "ipc/layout/separation.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
+#include "ipc/memory/separation.hpp"
 #include "ipc/owned/request.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/solver.hpp"
@@ -238,7 +238,7 @@ ProducerOptions moving() {
   return options;
 }
 
-void finish_behind_a_refusal(Recorder& r) {
+void finish_after_a_refusal(Recorder& r) {
   r.send_many(kBegin, 12);
   r.send(kBegin);  // refused: out of order
   r.finish();
@@ -297,7 +297,7 @@ void slow_down(Recorder& r) {
 std::vector<Plan> plans() {
   return {
       {"c2_running", recorded(1), with("c2", 2, 32), [](Recorder& r) { r.send_many(kBegin, 40); }},
-      {"c2_finished", moving(), with("c2", 8, 32), finish_behind_a_refusal},
+      {"c2_finished", moving(), with("c2", 8, 32), finish_after_a_refusal},
       {"two_waypoints", live(2), wide(), send_two_and_finish},
       {"live_running", live(2), limited(),
        [](Recorder& r) { r.send_many(kBegin + 2 * kTick, 10); }},

@@ -136,7 +136,7 @@ void prepare(apps::WaypointTable& table) {
   require_whole(shifted);
   apps::prepare(table, {.rate = 2}, nullptr);
   apps::continue_waypoints(table);
-  (void)apps::advise(table, apps::SolvedHow{}.freeze_ahead, std::nullopt, false);
+  (void)apps::advise(table, apps::SolvedHow{}.settle_ahead, std::nullopt, false);
 }
 
 }  // namespace

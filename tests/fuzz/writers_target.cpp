@@ -85,12 +85,12 @@ class Stream {
   void replace_solver() {
     board_.emplace(board_bytes_.span(), board_layout_);
     solver_.emplace(ring_, *board_, published_, ipc::window_options(board_header_),
-                    ipc::ingest_limits(ring_header_), ipc::dimension_kinds(ring_header_),
+                    ipc::interval_range(ring_header_), ipc::dimension_kinds(ring_header_),
                     ipc::live_options(board_header_));
   }
 
   void replace_producer() {
-    producer_.emplace(ring_bytes_.span(), ring_layout_, ipc::ingest_limits(ring_header_));
+    producer_.emplace(ring_bytes_.span(), ring_layout_, ipc::interval_range(ring_header_));
   }
 
   static void poke(GuardedBytes& bytes, Script& script) {

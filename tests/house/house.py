@@ -6,6 +6,7 @@
     house.py functions             the longest functions
     house.py members               the classes with the most data members
     house.py headers               the installed headers
+    house.py options               the options of streams and curves, and how many files name each
     house.py layers                the rooms from the lowest to the highest, and includes of higher rooms
     house.py walk                  the files that a waypoint passes through, as listed in CONTRIBUTING.md
     house.py symbols LIBRARY       compares the symbols that the shared library exports with exports.txt
@@ -14,7 +15,7 @@
 
 Each command exits with 1 if a limit is exceeded. The limits: 20 files in a room, 30 in a folder of tests or docs;
 400 lines in a file, with a median of at most 150; 40 lines in a function; 25 data members in a class; 24 installed
-headers.
+headers; 12 files of core, ipc and apps that name an option.
 """
 
 import argparse
@@ -31,6 +32,7 @@ EXPORTS = Path(__file__).resolve().parent / "exports.txt"
 PAGE = PROJECT / "docs" / "house.md"
 MOST_FILES, MOST_FILES_OF_TESTS, MOST_LINES, MEDIAN_LINES, MOST_FUNCTION_LINES, MOST_HEADERS = 20, 30, 400, 150, 40, 24
 MOST_MEMBERS = 25
+MOST_FILES_OF_AN_OPTION = 12
 # Their members are the words of a region: see ipc/layout/table.hpp.
 FORMATS = {"ipc/layout/header.hpp: RegionHeader", "ipc/layout/summary.hpp: Summary"}
 
@@ -44,7 +46,7 @@ ROOMS = {
             "record/verification record advise fit check replay trials demo machine latency soak completion",
 }
 # The installed C header, which may be included as an installed header of C++ is.
-C_HEADER = "ipc/c/splinecast.h"
+C_HEADER = "splinecast.h"
 LAYERS = [f"{layer}/{room}" for layer, rooms in ROOMS.items() for room in rooms.split()]
 
 
@@ -219,6 +221,21 @@ def layers():
     return out, broken
 
 
+def options():
+    """The options of streams and curves, and how many files of core, ipc and apps name each.
+
+    Those whose name is one word are left out, because text uses these words, too.
+    """
+    table = (PROJECT / "ipc/layout/options.hpp").read_text(encoding="utf-8")
+    keys = re.findall(r"\{\s*\"(\w+_\w+)\",", table) + ["named_limits"]
+    texts = [(PROJECT / name).read_text(encoding="utf-8") for name in files("core", "ipc", "apps")]
+    counts = sorted(((sum(bool(re.search(rf"\b{key}\b", text)) for text in texts), key) for key in keys), reverse=True)
+    broken = [f"{key} is in {count} files, more than {MOST_FILES_OF_AN_OPTION}" for count, key in counts
+              if count > MOST_FILES_OF_AN_OPTION]
+    broken += [] if len(keys) >= 9 else ["ipc/layout/options.hpp has too few options"]
+    return [f"{count:5}  {key}" for count, key in counts], broken
+
+
 def walk():
     """The files that a waypoint passes through, as listed in CONTRIBUTING.md."""
     text = (PROJECT / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -249,7 +266,7 @@ def symbols(library, write):
 
 
 COMMANDS = {"rooms": rooms, "files": file_lengths, "functions": functions, "members": members, "headers": headers,
-            "layers": layers, "walk": walk}
+            "options": options, "layers": layers, "walk": walk}
 
 
 def page():

@@ -3,8 +3,8 @@
 
     words.py [PATH...]      checks these tracked files (default: all); exits with 1 if a word of words.txt is found
 
-Text is: comments and string literals of C++, JavaScript and Python, names of tests, split into their words, the
-header of a patch, and all of every other text file. Generated data (results, golden values, plots) are not text.
+Text is: comments and string literals of C++, JavaScript and Python, identifiers of C++ and JavaScript and names of
+tests, split into their words, the header of a patch, and all of every other text file. Generated data (results, golden values, plots) are not text.
 exceptions.txt lists lines that may contain such a word: path, the text of the match or of more of the line, and the
 reason, separated by tabs. An exception that no line needs is an error too.
 """
@@ -49,6 +49,15 @@ def c_text(source):
     return parts
 
 
+def identifiers(source):
+    """(position, its words) of each identifier of C++ or JavaScript; the first time that it occurs."""
+    found = {}
+    for match in re.finditer(r"\b[A-Za-z_]\w*", C_TEXT.sub(lambda m: re.sub(r"[^\n]", " ", m.group(0)), source)):
+        words = " ".join(re.findall(r"[A-Z]+(?![a-z])|[A-Z][a-z]*|[a-z]+|\d+", match.group(0)))
+        found.setdefault(words.lower(), match.start())
+    return [(position, words) for words, position in found.items()]
+
+
 def python_text(source):
     """(position, text) of comments and strings."""
     starts = [0]
@@ -62,7 +71,7 @@ def python_text(source):
 def text_of(path, source):
     """(position, text) of the parts of a file that are text."""
     if path.endswith((".cpp", ".hpp", ".js", ".hpp.in", ".c", ".h")):
-        return c_text(source)
+        return c_text(source) + identifiers(source)
     if path.endswith(".py"):
         return python_text(source)
     if path.endswith(".patch"):

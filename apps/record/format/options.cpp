@@ -7,9 +7,12 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
+#include <type_traits>
 #include <utility>
 
+#include "apps/output/options.hpp"
 #include "apps/record/format/bytes.hpp"
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/check.hpp"
@@ -60,22 +63,13 @@ ordered_json dimensions_to_json(const StreamOptions& options) {
   return all;
 }
 
-ordered_json curve_to_json(const RegionHeader& header) {
-  return {{"method", find_method(header.method)->name},
-          {"lambda", header.lambda},
-          {"time_scale", header.time_scale},
-          {"settle", header.settle},
-          {"tail", to_string(static_cast<Tail>(header.tail))},
-          {"stop_time_ns", header.stop_time},
-          {"force_lag", header.force_lag != 0},
-          {"freeze_ahead_ns", header.freeze_ahead},
-          {"history_ns", header.history},
-          {"min_entry_ns", header.min_entry},
-          {"beyond", to_string(ipc::beyond(header))},
-          {"rules", header.rules},
-          {"capacity", header.capacity},
-          {"epoch", header.epoch},
-          {"pid", header.owner_pid}};
+ordered_json solver_to_json(const RegionHeader& header) {
+  ordered_json fields{{"method", find_method(header.method)->name}};
+  fields.update(curve_to_json(header));
+  fields["rules"] = header.rules;
+  fields["epoch"] = header.epoch;
+  fields["pid"] = header.owner_pid;
+  return fields;
 }
 
 /// Takes fields of a JSON object. Throws BadMessage, naming the field.
@@ -139,6 +133,27 @@ void put_dimension(const Fields& fields, bool has_curve, std::size_t d, RegionHe
   header.upper_bound[d] = fields.number_or("upper", kInfinity);
 }
 
+std::optional<Tail> parse_word(std::string_view text, Tail /*of*/) { return parse_tail(text); }
+std::optional<Beyond> parse_word(std::string_view text, Beyond /*of*/) {
+  return parse_beyond(text);
+}
+
+/// The value of an option of a curve; its range is checked with the header.
+template <typename Row>
+typename Row::Value take_value(const Row& row, const Fields& fields) {
+  using Value = typename Row::Value;
+  const std::string key = json_key(row);
+  if constexpr (std::is_same_v<Value, Time>) {
+    return Time(fields.take<std::int64_t>(key.c_str()));
+  } else if constexpr (std::is_enum_v<Value>) {
+    const auto found = parse_word(fields.take<std::string>(key.c_str()), Value{});
+    if (!found) throw fields.bad(key.c_str());
+    return *found;
+  } else {
+    return fields.take<Value>(key.c_str());
+  }
+}
+
 RegionHeader parse_common(const Fields& fields, bool has_curve) {
   RegionHeader header;
   header.magic = ipc::kMagic;
@@ -171,32 +186,17 @@ RegionHeader parse_common(const Fields& fields, bool has_curve) {
   if (condition.value.size() > header.dimensions) throw fields.bad("start");
   header.start_kind = static_cast<std::uint64_t>(condition.kind);
   std::ranges::copy(condition.value, header.start_value.begin());
-  header.min_interval = fields.take<std::int64_t>("min_interval_ns");
-  header.max_interval = fields.take<std::int64_t>("max_interval_ns");
+  for_each_interval([&](const auto& row) { ipc::put_value(row, take_value(row, fields), header); });
   return header;
 }
 
-void parse_curve(const Fields& fields, RegionHeader& header) {
+void parse_solver(const Fields& fields, RegionHeader& header) {
   const Method* const method = find_method(fields.take<std::string>("method"));
-  const auto tail = parse_tail(fields.take<std::string>("tail"));
   if (method == nullptr) throw fields.bad("method");
-  if (!tail) throw fields.bad("tail");
-  const auto beyond = parse_beyond(fields.take<std::string>("beyond"));
-  if (!beyond) throw fields.bad("beyond");
   header.kind = static_cast<std::uint64_t>(ipc::RegionKind::spline);
   header.method = method->number;
-  header.lambda = fields.take<double>("lambda");
-  header.time_scale = fields.take<double>("time_scale");
-  header.settle = fields.take<std::uint64_t>("settle");
-  header.tail = static_cast<std::uint64_t>(*tail);
-  header.stop_time = fields.take<std::int64_t>("stop_time_ns");
-  header.force_lag = fields.take<bool>("force_lag") ? 1 : 0;
-  header.freeze_ahead = fields.take<std::int64_t>("freeze_ahead_ns");
-  header.history = fields.take<std::int64_t>("history_ns");
-  header.min_entry = fields.take<std::int64_t>("min_entry_ns");
-  header.beyond = static_cast<std::uint64_t>(*beyond);
+  for_each_field([&](const auto& row) { ipc::put_value(row, take_value(row, fields), header); });
   header.rules = fields.has("rules") ? fields.take<std::uint64_t>("rules") : ipc::kFormerRules;
-  header.capacity = fields.take<std::uint64_t>("capacity");
   header.epoch = fields.take<std::uint64_t>("epoch");
   header.owner_pid = fields.take<std::uint64_t>("pid");
 }
@@ -238,7 +238,7 @@ StreamOptions parse(const json& object) {
   check_ring(options.waypoints);
   if (solver.is_null()) return options;
   options.spline = common;
-  parse_curve(Fields(solver), *options.spline);
+  parse_solver(Fields(solver), *options.spline);
   check_board(*options.spline);
   return options;
 }
@@ -253,13 +253,12 @@ ordered_json to_json(const StreamOptions& options) {
                     {"clock", kClocks[ring.clock]},
                     {"wall_offset_ns", options.wall_offset.count()},
                     {"dimensions", dimensions_to_json(options)},
-                    {"start", to_string(ipc::start_condition(ring))},
-                    {"min_interval_ns", ring.min_interval},
-                    {"max_interval_ns", ring.max_interval},
-                    {"capacity", ring.capacity},
-                    {"epoch", ring.epoch},
-                    {"pid", ring.owner_pid},
-                    {"solver", nullptr}};
+                    {"start", to_string(ipc::start_condition(ring))}};
+  json.update(intervals_to_json(ring));
+  json.update(ordered_json{{"capacity", ring.capacity},
+                           {"epoch", ring.epoch},
+                           {"pid", ring.owner_pid},
+                           {"solver", nullptr}});
   if (ring.law_id != 0) {
     json["law"] = {
         {"name", ipc::text_of(ring.law)}, {"id", ring.law_id}, {"largest_rate", ring.largest_rate}};
@@ -267,7 +266,7 @@ ordered_json to_json(const StreamOptions& options) {
   if (ring.is_law != 0) {
     json["time_law"] = {{"origin_ns", ring.law_origin}, {"largest_rate", ring.largest_rate}};
   }
-  if (options.spline) json["solver"] = curve_to_json(*options.spline);
+  if (options.spline) json["solver"] = solver_to_json(*options.spline);
   return json;
 }
 

@@ -20,8 +20,8 @@ constexpr std::size_t kMany = 128;
 
 }  // namespace
 
-Watcher::Watcher(const std::vector<std::string>& wanted, const Trust& trust, Tell tell)
-    : trust_(trust), tell_(std::move(tell)) {
+Watcher::Watcher(const std::vector<std::string>& wanted, const Trust& trust, Notify notify)
+    : trust_(trust), notify_(std::move(notify)) {
   for (const std::string& text : wanted) {
     if (ipc::is_pattern(text)) {
       patterns_.push_back(text);
@@ -47,7 +47,7 @@ void Watcher::sweep(Batch& batch) {
     look_around(batch);
   }
   schedule_.begin(batch.now);
-  is_behind_ = false;
+  is_late_ = false;
   for (std::size_t i = 0; i < members_.size(); ++i) {
     Member& member = *members_[i];
     if (!schedule_.reads(i, member.active)) continue;
@@ -61,13 +61,13 @@ void Watcher::sweep(Batch& batch) {
     // The next stream of this name may exist already.
     has_detached_ = has_detached_ || !member.watch.is_complete();
     member.active = batch.now;
-    is_behind_ = is_behind_ || batch.records.size() - before > kMany;
+    is_late_ = is_late_ || batch.records.size() - before > kMany;
     schedule_.note_work();
   }
 }
 
 Time Watcher::next_pause() const noexcept {
-  return is_behind_ ? Time::zero() : schedule_.next_pause();
+  return is_late_ ? Time::zero() : schedule_.next_pause();
 }
 
 void Watcher::look_around(Batch& batch) {
@@ -96,11 +96,11 @@ void Watcher::attach(Batch& batch, Member& member, bool was_there) {
     const bool was_attached = member.watch.is_attached();
     if (member.watch.attach(batch, was_there)) member.active = batch.now;
     if (!was_attached && member.watch.is_attached()) {
-      tell_(member.watch.stream(), "recording", false);
+      notify_(member.watch.stream(), "recording", false);
     }
     member.is_refused = false;
   } catch (const StreamError& error) {
-    if (!member.is_refused) tell_(member.watch.stream(), error.what(), true);
+    if (!member.is_refused) notify_(member.watch.stream(), error.what(), true);
     member.is_refused = true;
   }
   has_seen_any_ = has_seen_any_ || member.watch.is_attached();

@@ -23,11 +23,11 @@ class Watcher {
  public:
   /// Called when a stream is recorded from now on, and with the reason when one cannot be recorded,
   /// once until it has been replaced.
-  using Tell = std::function<void(std::string_view stream, std::string_view why, bool is_lost)>;
+  using Notify = std::function<void(std::string_view stream, std::string_view why, bool is_lost)>;
 
   /// Each of `wanted` is a name or a pattern, see ipc::is_pattern(). Throws BadRequest for an
   /// invalid name.
-  Watcher(const std::vector<std::string>& wanted, const Trust& trust, Tell tell);
+  Watcher(const std::vector<std::string>& wanted, const Trust& trust, Notify notify);
 
   /// Looks at every stream that is due. Writes what is new into the batch, and sets its time.
   void sweep(Batch& batch);
@@ -65,7 +65,7 @@ class Watcher {
 
   std::vector<std::string> patterns_;
   Trust trust_;
-  Tell tell_;
+  Notify notify_;
   WallClock clock_;
   ipc::FolderWatch folder_;
   std::vector<std::unique_ptr<Member>> members_;
@@ -73,7 +73,7 @@ class Watcher {
   Time next_look_ = Time::min();
   ipc::PollSchedule schedule_;
   bool has_looked_around_ = false;
-  bool is_behind_ = false;
+  bool is_late_ = false;
   bool has_detached_ = false;
   bool has_seen_any_ = false;
 };

@@ -139,8 +139,8 @@ class McapRows final : public RowReader {
   void end() {
     is_at_end_ = true;
     decoder_->finish();
-    if (!reader_.ended_early() || is_quiet_ || is_told_) return;
-    is_told_ = true;
+    if (!reader_.ended_early() || is_quiet_ || is_reported_) return;
+    is_reported_ = true;
     say(
         fmt::format("{}: the file is cut off: read up to its last whole chunk (splinecast recover "
                     "makes a complete file of it)",
@@ -155,7 +155,7 @@ class McapRows final : public RowReader {
   const mcap::Channel* channel_ = nullptr;  ///< of the last message of the topic
   std::uint64_t messages_ = 0;              ///< of the topic, so far
   bool is_at_end_ = false;
-  bool is_told_ = false;
+  bool is_reported_ = false;
   char first_ = 0;
 };
 

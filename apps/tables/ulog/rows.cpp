@@ -107,9 +107,9 @@ class UlogRows final : public RowReader {
   }
 
   bool end() {
-    const bool tells = reader_.ended_early() && !is_quiet_ && !is_told_;
-    if (tells) say(fmt::format("{}: the file is cut off", file_.name()));
-    is_told_ = is_told_ || tells;
+    const bool reports = reader_.ended_early() && !is_quiet_ && !is_reported_;
+    if (reports) say(fmt::format("{}: the file is cut off", file_.name()));
+    is_reported_ = is_reported_ || reports;
     return false;
   }
 
@@ -121,7 +121,7 @@ class UlogRows final : public RowReader {
   std::optional<std::size_t> index_{};  ///< of the topic in the reader
   std::vector<double> position_{};
   std::size_t samples_ = 0;
-  bool is_told_ = false;
+  bool is_reported_ = false;
   char first_ = 0;
 };
 

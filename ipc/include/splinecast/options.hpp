@@ -32,8 +32,9 @@ struct RegionAccess {
 
 /// The interval allowed between two consecutive waypoints.
 struct IngestLimits {
-  Time min_interval{1'000};              ///< at least 1 ns; default 1 µs
-  Time max_interval{3'600'000'000'000};  ///< min_interval or more, below 2⁶¹ ns; default 1 h
+  Time min_interval{1'000};              ///< 1 ns or more; default 1 µs
+  Time max_interval{3'600'000'000'000};  ///< min_interval or more, below 2⁶¹ ns;
+                                         ///< default 1 h
 };
 
 /// The properties of a stream, which its producer sets.
@@ -49,11 +50,12 @@ struct ProducerOptions {
   Condition start{.kind = ConditionKind::halt, .value = {}};  ///< one for which is_online() holds
   IngestLimits limits{};
   Time horizon{3'600'000'000'000};  ///< of a live stream without a law: how far ahead of now a time
-                                    ///< may be; above 0, default 1 h; max(): no time is compared
+                                    ///< may be; above 0; default 1 h; max(): no time is compared
                                     ///< with now, for a simulated clock
   double start_tolerance = 0.001;   ///< of a live stream: see Producer::append; in the dimension's
-                                    ///< unit, rad for a quaternion; 0 or more
-  std::size_t capacity = 1024;      ///< ring items, 2 to 2²⁴; rounded up to a power of two
+                                    ///< unit, rad for a quaternion; 0 or more; default 0.001
+  std::size_t capacity = 1024;      ///< ring items, 2 to 2²⁴; default 1,024; rounded up to a
+                                    ///< power of two
   RegionAccess access{};
   Trust trust{};
 };
@@ -63,12 +65,11 @@ struct ProducerOptions {
 /// not contradict these.
 struct SolverOptions {
   const Method* method = nullptr;        ///< default c2; streams() must hold
-  std::optional<double> lambda{};        ///< of smoothing, which needs it: λ, 0 to 1e100, in s³
+  std::optional<double> lambda{};        ///< of smoothing, which needs it: λ, 0 to 1e100 s³
   std::optional<double> time_scale{};    ///< of rounded: above 0, at most 1e100 s; default 1 s
-  std::optional<std::size_t> settle{};   ///< settle lag K, at most 64. c2: 0 or more, default 8.
-                                         ///< smoothing: 13 or more unless force_lag, default 64.
-                                         ///< Other methods: Method::look_ahead or more, which is
-                                         ///< the default
+  std::optional<std::size_t> settle{};   ///< settle lag K, 0 to 64; default 8 for c2, 64 for
+                                         ///< smoothing, else the look-ahead of the method, which is
+                                         ///< its least. Smoothing: 13 or more unless force_lag
   std::optional<Tail> tail{};            ///< default bessel; not for a method with its own tail
   bool force_lag = false;                ///< of smoothing: accept a lag that is too short for λ
   std::optional<Time> stop_time{};       ///< length of the stop segment; with a limit of
@@ -79,14 +80,14 @@ struct SolverOptions {
                                             ///< `limits` has no list; unknown names have no effect
   std::optional<Beyond> beyond{};           ///< default report
   std::optional<Time> freeze_ahead{};       ///< live: the curve settles this long ahead of now;
-                                            ///< 1 ns to 1 min, default 5 ms
+                                            ///< 1 ns to 1 min; default 5 ms
   std::optional<Time> history{};            ///< live: segments that ended less than this ago are
-                                            ///< kept; 0 to 24 h, default 1 s
-  std::optional<Time> min_entry{};          ///< live: least length of an entry; 1 ns to 1 min,
+                                            ///< kept; 0 to 24 h; default 1 s
+  std::optional<Time> min_entry{};          ///< live: least length of an entry; 1 ns to 1 min;
                                             ///< default freeze_ahead
   std::optional<double> largest_rate{};     ///< of a time law: above 0, at most 100; default 1
-  std::optional<std::size_t> capacity{};    ///< segments of history, 2(K + 6) + 2 to 2²²; rounded
-                                            ///< up to a power of two, default 4,096
+  std::optional<std::size_t> capacity{};    ///< segments of history, 2(K + 6) + 2 to 2²²; default
+                                            ///< 4,096; rounded up to a power of two
   bool wake = true;  ///< wake waiting readers: one system call per revision, which wakes at most
                      ///< eight threads
   RegionAccess access{};

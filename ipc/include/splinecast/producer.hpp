@@ -83,7 +83,7 @@ struct ReplacementBegin {
 struct ReplaceOptions {
   /// Least duration of the entry onto the new waypoints; waypoints before its end are passed over.
   /// 0 or less: the entry ends at the first waypoint or, with limits, at the first one where they
-  /// are kept. At most the stream's max_interval.
+  /// are kept. At most the longest interval that the stream allows.
   Time blend{};
 };
 

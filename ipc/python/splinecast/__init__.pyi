@@ -74,17 +74,19 @@ class Producer:
     start : str or (str, array-like)
         The boundary condition at the first waypoint: 'halt' (full stop), 'clamped', 'natural',
         'velocity=1,2' or ('velocity', values), 'acceleration=…'.
-    min_interval, max_interval : float
-        The interval allowed between two waypoints [s].
+    min_interval : float
+        Shortest interval between two waypoints [s]: 1 ns or more; default 1 µs.
+    max_interval : float
+        Longest interval between two waypoints [s]: min_interval or more, below 2⁶¹ ns; default 1 h.
     horizon : float
-        Of a live stream without a law: how far ahead of now a time may be [s]. A time of another
-        clock is refused, and the message names that clock.
+        Of a live stream without a law: how far ahead of now a time may be [s]: above 0; default
+        1 h. A time of another clock is refused, and the message names that clock.
     start_tolerance : float
         Of a live stream: how far the first waypoint may be from where an earlier stream of this
         name has left the machine, in a dimension without limits; in the dimension's unit, rad for a
-        quaternion.
+        quaternion: 0 or more; default 0.001.
     capacity : int
-        Items of the ring, 2 to 2**24; rounded up to a power of two.
+        Items of the ring, 2 to 2²⁴; default 1,024; rounded up to a power of two.
     mode : int
         Permission bits of the region.
     group : int, optional
@@ -426,31 +428,38 @@ class Solver:
     method : str, optional
         Default 'c2'; see `methods`.
     lam : float, optional
-        λ of 'smoothing' [s³], which needs it.
+        λ of 'smoothing', which needs it: 0 to 1e100 s³.
     time_scale : float, optional
-        Of 'rounded': the seconds that count as one unit of position.
+        Of 'rounded': the time that counts as one unit of position: above 0, at most 1e100 s;
+        default 1 s.
     settle : int, optional
-        The settle lag K.
+        The settle lag K, 0 to 64; default 8 for c2, 64 for smoothing, else the look-ahead of the
+        method.
     tail : {'bessel', 'parabolic', 'natural', 'clamped'}, optional
-        The condition at the newest knot while the stream continues.
+        The condition at the newest knot while the stream continues; default bessel.
     force_lag : bool
         Of 'smoothing': accept a lag that is too short for λ.
     stop_time : float, optional
-        Length of the stop segment [s].
+        Length of the stop segment [s]; with a limit of acceleration or jerk, its least length:
+        above 0, at most 2⁶⁰ ns; default 250 ms.
     limits : mapping, optional
         By kind, 'velocity', 'acceleration', 'jerk', 'lower', 'upper': a number for all dimensions
         or one per dimension.
     named_limits : mapping, optional
         By dimension name: a mapping from kind to number.
-    beyond : {'report', 'refuse'}, optional
-        What to do with a waypoint that makes the curve exceed a limit.
-    freeze_ahead, history, min_entry : float, optional
-        Live streams: the curve settles this long ahead of now; segments that ended less than this
-        ago are kept; least length of an entry [s].
+    beyond : {'report', 'refuse', 'enter'}, optional
+        What to do with a waypoint that makes the curve exceed a limit: report and accept it,
+        refuse it, or leave the spline for an entry within the limits; default report.
+    freeze_ahead : float, optional
+        Live streams: the curve settles this long ahead of now [s]: 1 ns to 1 min; default 5 ms.
+    history : float, optional
+        Live streams: segments that ended less than this ago are kept [s]: 0 to 24 h; default 1 s.
+    min_entry : float, optional
+        Live streams: least length of an entry [s]: 1 ns to 1 min; default freeze_ahead.
     largest_rate : float, optional
-        Of a time law: above 0, at most 100. Default 1.
+        Of a time law: above 0, at most 100; default 1.
     capacity : int, optional
-        Segments of history; rounded up to a power of two.
+        Segments of history, 2(K + 6) + 2 to 2²²; default 4,096; rounded up to a power of two.
     wake : bool
         Wake waiting readers at each revision.
     mode : int

@@ -2,16 +2,22 @@
 
 #include <pybind11/stl.h>
 
-#include <array>
 #include <limits>
+#include <optional>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 
+#include "ipc/layout/options.hpp"
 #include "ipc/python/values/arrays.hpp"
 #include "ipc/python/values/times.hpp"
 #include "splinecast/errors.hpp"
 
 namespace splinecast::python {
 namespace {
+
+/// `lambda` is a word of the language.
+std::string_view python_key(std::string_view key) { return key == "lambda" ? "lam" : key; }
 
 std::string text_of(py::handle value) { return std::string(py::repr(value)); }
 
@@ -135,26 +141,32 @@ NamedLimits limits_of(const std::string& dimension, const py::dict& kinds) {
   return found;
 }
 
-Tail tail(const std::string& text) {
-  const auto parsed = parse_tail(text);
-  if (parsed) return *parsed;
-  throw BadRequest("tail: '" + text + "' is not bessel, parabolic, natural or clamped");
-}
+std::optional<Tail> parse(std::string_view text, Tail /*of*/) { return parse_tail(text); }
+std::optional<Beyond> parse(std::string_view text, Beyond /*of*/) { return parse_beyond(text); }
 
-Beyond beyond(const std::string& text) {
-  if (const auto parsed = parse_beyond(text)) return *parsed;
-  throw BadRequest("beyond: '" + text + "' is not report, refuse or enter");
-}
-
-void read_times(const py::kwargs& keywords, SolverOptions& options) {
-  const std::array<std::pair<const char*, std::optional<Time>*>, 4> times{
-      {{"stop_time", &options.stop_time},
-       {"freeze_ahead", &options.freeze_ahead},
-       {"history", &options.history},
-       {"min_entry", &options.min_entry}}};
-  for (const auto& [name, time] : times) {
-    with(keywords, name, [&, n = name, t = time](const py::object& v) { *t = duration(v, n); });
-  }
+/// Reads the keyword of an option into `out`, its value or an optional of it.
+template <typename Row, typename Out>
+void read_value(const Row& row, const std::string& key, const py::kwargs& keywords, Out& out) {
+  using Value = typename Row::Value;
+  const char* const name = key.c_str();
+  with(keywords, name, [&](const py::object& value) {
+    if constexpr (std::is_same_v<Value, Time>) {
+      out = duration(value, name);
+    } else if constexpr (std::is_same_v<Value, double>) {
+      out = number(value, name);
+    } else if constexpr (std::is_same_v<Value, std::size_t>) {
+      out = count(value, name);
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      out = as<bool>(value, name);
+    } else {
+      const auto text = as<std::string>(value, name);
+      const auto parsed = parse(text, Value{});
+      if (!parsed) {
+        throw BadRequest(key + ": '" + text + "' is not " + std::string(row.range.text));
+      }
+      out = *parsed;
+    }
+  });
 }
 
 void read_limits(const py::kwargs& keywords, SolverOptions& options) {
@@ -165,8 +177,6 @@ void read_limits(const py::kwargs& keywords, SolverOptions& options) {
           limits_of(name.cast<std::string>(), py::reinterpret_borrow<py::dict>(kinds)));
     }
   });
-  with(keywords, "beyond",
-       [&](const py::object& v) { options.beyond = beyond(as<std::string>(v, "beyond")); });
 }
 
 }  // namespace
@@ -228,35 +238,37 @@ ProducerOptions producer_options(const py::kwargs& keywords) {
   with(keywords, "clock",
        [&](const py::object& v) { options.clock = clock(as<std::string>(v, "clock")); });
   with(keywords, "start", [&](const py::object& v) { options.start = condition(v); });
-  with(keywords, "min_interval",
-       [&](const py::object& v) { options.limits.min_interval = duration(v, "min_interval"); });
-  with(keywords, "max_interval",
-       [&](const py::object& v) { options.limits.max_interval = duration(v, "max_interval"); });
-  with(keywords, "horizon", [&](const py::object& v) { options.horizon = duration(v, "horizon"); });
-  with(keywords, "start_tolerance",
-       [&](const py::object& v) { options.start_tolerance = as<double>(v, "start_tolerance"); });
-  with(keywords, "capacity", [&](const py::object& v) { options.capacity = count(v, "capacity"); });
+  ipc::for_each_stream_option([&](const auto& row) {
+    read_value(row, std::string(row.key), keywords, row.kOption(options));
+  });
   options.access = access(keywords, options.trust);
   return options;
+}
+
+std::vector<std::string> access_keywords() { return {"mode", "group", "owner"}; }
+
+std::vector<std::string> producer_keywords() {
+  std::vector<std::string> all = access_keywords();
+  all.insert(all.end(), {"names", "units", "dimensions", "kinds", "clock", "law", "start"});
+  ipc::for_each_stream_option([&](const auto& row) { all.emplace_back(row.key); });
+  return all;
+}
+
+std::vector<std::string> solver_keywords() {
+  std::vector<std::string> all = access_keywords();
+  all.insert(all.end(), {"method", "limits", "named_limits", "wake"});
+  ipc::for_each_option([&](const auto& row) { all.emplace_back(python_key(row.key)); });
+  return all;
 }
 
 SolverOptions solver_options(const py::kwargs& keywords) {
   SolverOptions options;
   with(keywords, "method",
        [&](const py::object& v) { options.method = &method(as<std::string>(v, "method")); });
-  with(keywords, "lam", [&](const py::object& v) { options.lambda = number(v, "lam"); });
-  with(keywords, "time_scale",
-       [&](const py::object& v) { options.time_scale = number(v, "time_scale"); });
-  with(keywords, "largest_rate",
-       [&](const py::object& v) { options.largest_rate = number(v, "largest_rate"); });
-  with(keywords, "settle", [&](const py::object& v) { options.settle = count(v, "settle"); });
-  with(keywords, "tail",
-       [&](const py::object& v) { options.tail = tail(as<std::string>(v, "tail")); });
-  with(keywords, "force_lag",
-       [&](const py::object& v) { options.force_lag = as<bool>(v, "force_lag"); });
   with(keywords, "wake", [&](const py::object& v) { options.wake = as<bool>(v, "wake"); });
-  with(keywords, "capacity", [&](const py::object& v) { options.capacity = count(v, "capacity"); });
-  read_times(keywords, options);
+  ipc::for_each_option([&](const auto& row) {
+    read_value(row, std::string(python_key(row.key)), keywords, options.*row.kOption);
+  });
   read_limits(keywords, options);
   options.access = access(keywords, options.trust);
   return options;

@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 
 #include <string>
+#include <vector>
 
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/method.hpp"
@@ -19,6 +20,11 @@ namespace py = pybind11;
 
 /// A method by its name.
 [[nodiscard]] const Method& method(const std::string& name);
+
+/// The keywords of the constructors of RateCommander and Stopper, of Producer, and of Solver.
+[[nodiscard]] std::vector<std::string> access_keywords();
+[[nodiscard]] std::vector<std::string> producer_keywords();
+[[nodiscard]] std::vector<std::string> solver_keywords();
 
 [[nodiscard]] ProducerOptions producer_options(const py::kwargs& keywords);
 [[nodiscard]] SolverOptions solver_options(const py::kwargs& keywords);

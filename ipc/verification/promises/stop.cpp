@@ -85,7 +85,7 @@ Time former_stop_time(const core::StopRules& rules, const Instant& from) noexcep
     const double j_max = core::limit_of(limits.jerk, d);
     if (j_max > 0) longest = std::max(longest, std::sqrt(6 * std::abs(v) / j_max));
   }
-  return std::max(rules.stop_time, from_seconds(std::min(longest, kLongest)));
+  return std::max(rules.stop_length, from_seconds(std::min(longest, kLongest)));
 }
 
 std::string_view broken_promise(const core::StopRules& rules, const Instant& from,
@@ -96,7 +96,7 @@ std::string_view broken_promise(const core::StopRules& rules, const Instant& fro
   // The length of a rotation's stop is found in steps, from the acceleration before it is clamped.
   if (part == StopPart::remainder || !rules.kinds.quaternions().empty()) return {};
   const Time least = longest_needed(rules, from);
-  const Time most = std::max(rules.stop_time, least);
+  const Time most = std::max(rules.stop_length, least);
   if (length > longer(most)) return "length of a stop: too long";
   if (passes_bound(limits, from, length) && passes_bound(limits, from, shorter(length)) &&
       length > longer(least)) {

@@ -175,7 +175,7 @@ TEST_F(Ingest, ARowRefusedByTheSolverIsListedWithItsLine) {
 }
 
 TEST_F(Ingest, TheSolverReportsTheFirstRefusalOfEachReasonImmediately) {
-  const std::string told =
+  const std::string reported =
       "'" + name() +
       "': item 20 refused: lag too short (time 400000000 ns); further ones for this reason";
   for (const std::string& wanted : {name(), name() + "*"}) {
@@ -185,9 +185,10 @@ TEST_F(Ingest, TheSolverReportsTheFirstRefusalOfEachReasonImmediately) {
     solver.await_message("items refused");
     solver.signal(SIGTERM);
     const Ended ended = solver.wait();
-    const std::size_t first = ended.err.find(told);
+    const std::size_t first = ended.err.find(reported);
     EXPECT_NE(first, std::string::npos) << ended.err;
-    EXPECT_EQ(ended.err.find("lag too short", first + told.size()), std::string::npos) << ended.err;
+    EXPECT_EQ(ended.err.find("lag too short", first + reported.size()), std::string::npos)
+        << ended.err;
     EXPECT_LT(first, ended.err.find("items refused"));
     EXPECT_EQ(run({"rm", name()}).code, 0);
   }

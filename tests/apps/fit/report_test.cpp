@@ -311,9 +311,9 @@ TEST(Report, OverlaysSeveralMethodsAndTakesUnitsFromTheColumnsNames) {
   EXPECT_EQ(data.at("dimensions")[0].at("unit"), "rad");
   EXPECT_EQ(data.at("dimensions")[1].at("unit"), "m");
   EXPECT_EQ(data.at("dimensions")[2].at("name"), "w[2]");
-  const Ended told = run({"fit", file, "--unit", "deg", "--method", "c2", "--method", "pchip",
-                          "--report", folder.path("b.html")});
-  ASSERT_EQ(told.code, 0) << told.err;
+  const Ended reported = run({"fit", file, "--unit", "deg", "--method", "c2", "--method", "pchip",
+                              "--report", folder.path("b.html")});
+  ASSERT_EQ(reported.code, 0) << reported.err;
   EXPECT_EQ(data_of(testing::read_file(folder.path("b.html"))).at("dimensions")[2].at("unit"),
             "deg");
   EXPECT_EQ(run({"fit", file, "--unit", "deg", "--dt", "1"}).code, 2);

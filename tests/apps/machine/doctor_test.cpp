@@ -54,7 +54,7 @@ TEST(Doctor, ReportsOnlyOkForAGoodMachine) {
   for (const Finding& finding : check_machine(good_machine(), kNeeded, kNeeded)) {
     EXPECT_EQ(finding.verdict, Verdict::ok) << finding.check << ": " << finding.means;
     EXPECT_FALSE(finding.means.empty()) << finding.check;
-    EXPECT_TRUE(finding.mend.empty()) << finding.check;
+    EXPECT_TRUE(finding.fix.empty()) << finding.check;
   }
 }
 
@@ -122,7 +122,7 @@ TEST(Doctor, FindsEachLimitIndependently) {
       }
       EXPECT_EQ(finding.verdict, one.verdict) << finding.means;
       EXPECT_NE(finding.means.find(one.means), std::string::npos) << finding.means;
-      EXPECT_FALSE(finding.mend.empty()) << finding.means;
+      EXPECT_FALSE(finding.fix.empty()) << finding.means;
     }
   }
 }

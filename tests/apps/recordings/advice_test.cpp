@@ -152,7 +152,7 @@ TEST(Advice, RefusesRecordingsThatAreTooShort) {
 }
 
 TEST(Advice, TheLeadCoversTheDepthThatKNeedsAndTheJitter) {
-  const SolvedHow how{.settle = 8, .freeze_ahead = milliseconds(5)};
+  const SolvedHow how{.settle = 8, .settle_ahead = milliseconds(5)};
   EXPECT_EQ(depth_needed(milliseconds(10), how), milliseconds(95));
   const Intervals fast{.median = milliseconds(10), .jitter = milliseconds(2)};
   EXPECT_EQ(advised_lead(fast, Time::max(), how), milliseconds(200));
@@ -179,9 +179,9 @@ TEST(Advice, LimitsAreThreeTimesTheMotionAndTheStopKeepsThem) {
   const AdvisedLimits limits = advised_limits(motion);
   EXPECT_EQ(limits.velocity, (std::vector<double>{3, 0.1 * 3, 0}));
   EXPECT_EQ(limits.acceleration, (std::vector<double>{6, 0.1 * 1.5, 0}));
-  EXPECT_EQ(limits.stop_time, seconds(1));  // of the second dimension: 1.5 · 0.1 / 0.15
-  EXPECT_EQ(advised_limits(std::span(motion).first(1)).stop_time, milliseconds(300));
-  EXPECT_EQ(advised_limits(std::span(motion).last(1)).stop_time, milliseconds(250));
+  EXPECT_EQ(limits.stop_length, seconds(1));  // of the second dimension: 1.5 · 0.1 / 0.15
+  EXPECT_EQ(advised_limits(std::span(motion).first(1)).stop_length, milliseconds(300));
+  EXPECT_EQ(advised_limits(std::span(motion).last(1)).stop_length, milliseconds(250));
 }
 
 class Silences : public ::testing::Test {
@@ -190,7 +190,7 @@ class Silences : public ::testing::Test {
     return foresee(lead, silence, milliseconds(10), milliseconds(5), motion_, limits_);
   }
   std::vector<DimensionMotion> motion_{{.velocity = 1, .peak_velocity = 1, .acceleration = 2}};
-  AdvisedLimits limits_{.velocity = {3}, .acceleration = {6}, .stop_time = milliseconds(250)};
+  AdvisedLimits limits_{.velocity = {3}, .acceleration = {6}, .stop_length = milliseconds(250)};
 };
 
 TEST_F(Silences, ThatTheDepthCoversHaveNoEffect) {
@@ -198,7 +198,7 @@ TEST_F(Silences, ThatTheDepthCoversHaveNoEffect) {
   EXPECT_EQ(found.depth_left, milliseconds(90));
   EXPECT_EQ(found.dry, Time(0));
   EXPECT_FALSE(found.comes_to_rest);
-  EXPECT_EQ(found.way_back, std::vector<std::optional<double>>{0.0});
+  EXPECT_EQ(found.return_time, std::vector<std::optional<double>>{0.0});
 }
 
 TEST_F(Silences, LongerThanTheDepthStarveTheStreamWhichReturnsInMinimumTime) {
@@ -208,18 +208,18 @@ TEST_F(Silences, LongerThanTheDepthStarveTheStreamWhichReturnsInMinimumTime) {
   // From rest, 0.255 − 0.125 away from a path of velocity 1: accelerates with 6 to a velocity of
   // 1 + u, and then decelerates with 6 to velocity 1.
   const double u = std::sqrt(6 * 0.13 + 0.5);
-  EXPECT_NEAR(*found.way_back.front(), (2 * u + 1) / 6, 1e-9);
+  EXPECT_NEAR(*found.return_time.front(), (2 * u + 1) / 6, 1e-9);
   EXPECT_FALSE(foreseen(milliseconds(60), milliseconds(100)).comes_to_rest);
 }
 
 TEST_F(Silences, AreFollowedByAReturnWithinTheVelocityLimit) {
   limits_.velocity = {1.5};
-  const double capped = *foreseen(milliseconds(60), milliseconds(300)).way_back.front();
+  const double capped = *foreseen(milliseconds(60), milliseconds(300)).return_time.front();
   // 0.13 away: accelerates from 0 to 1.5, stays 0.5 faster than the path, decelerates to 1.
   const double ramps = (0.25 - 0.5) / 6;
   EXPECT_NEAR(capped, 1.5 / 6 + (0.13 - ramps) / 0.5 + 0.5 / 6, 1e-9);
   limits_.velocity = {0.9};
-  EXPECT_FALSE(foreseen(milliseconds(60), milliseconds(300)).way_back.front());
+  EXPECT_FALSE(foreseen(milliseconds(60), milliseconds(300)).return_time.front());
 }
 
 }  // namespace

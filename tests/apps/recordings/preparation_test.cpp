@@ -108,7 +108,7 @@ TEST(Recording, MeasuresGapsInTheTimeOfTheSource) {
 
 TEST(Recording, TheMaximumIntervalRefusesNoRowAfterAGapThatIsSplit) {
   const WaypointTable table = table_at({0, 100, 200, 5200, 5300});
-  const Preparation how{.limits = {.max_interval = seconds(1)}, .gap = {}};
+  const Preparation how{.intervals = {.most = seconds(1)}, .gap = {}};
   Recording split = recording_of(table, how);
   EXPECT_EQ(pass_of(split), "2:0:1 3:100:1 4:200:1 5:5200:1* 6:5300:1 ");
   Preparation bridge = how;

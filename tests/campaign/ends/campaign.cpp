@@ -24,11 +24,11 @@ double thread_seconds() {
 
 /// Lives every kThreads-th seed from `first` on.
 void live(const CampaignOptions& options, std::uint64_t first, ends::Tally& tally) {
-  const auto goes_on = [&](std::uint64_t seed) {
+  const auto continues = [&](std::uint64_t seed) {
     return options.runs > 0 ? seed - options.seed < options.runs
                             : thread_seconds() < options.seconds;
   };
-  for (std::uint64_t seed = first; goes_on(seed) && !apps::stop_requested(); seed += kThreads) {
+  for (std::uint64_t seed = first; continues(seed) && !apps::stop_requested(); seed += kThreads) {
     Random random(seed);
     const ends::LifePlan plan = ends::make_life(seed, random);
     ends::Life(plan, tally, random).run();

@@ -68,7 +68,7 @@ bool Life::is_over() const {
 
 void Life::run() {
   tally_.begin_life(plan_);
-  const Time ahead = plan_.stream.live.freeze_ahead;
+  const Time ahead = plan_.stream.live.settle_ahead;
   for (int steps = 0; !is_over(); ++steps) {
     steps_without_finish_ += is_ending_ && !has_asked_ && end_at_ == Time::max() ? 1 : 0;
     if (steps > kMostSteps) return;
@@ -147,9 +147,9 @@ void Life::replace_motion() {
   watch_.note_replacement();
   const std::size_t count = plan_.motion.times.size();
   const Time t =
-      clock_.now() + plan_.stream.live.freeze_ahead + random_.part(plan_.stream.interval, 0, 3);
+      clock_.now() + plan_.stream.live.settle_ahead + random_.part(plan_.stream.interval, 0, 3);
   std::vector<Waypoint> waypoints;
-  Time at = t + random_.part(plan_.stream.live.min_entry, 1, 6);
+  Time at = t + random_.part(plan_.stream.live.least_entry, 1, 6);
   const bool goes_back = random_.chance(0.5);
   const std::size_t from = random_.below(count);
   const std::size_t most = 1 + random_.below(8);
@@ -164,7 +164,7 @@ void Life::replace_motion() {
 void Life::finish() {
   const auto status = stream_.ring.writer.finish(plan_.stream.end, solved());
   if (status == AppendStatus::full) {
-    end_at_ = clock_.now() + plan_.stream.live.freeze_ahead;
+    end_at_ = clock_.now() + plan_.stream.live.settle_ahead;
     return;
   }
   has_asked_ = true;

@@ -174,7 +174,7 @@ void CurveWatch::check_entry_bounds(const Piece& piece, const Peaks& peaks, Time
 double CurveWatch::shown(std::size_t d) const {
   constexpr double kFactor = 3;
   constexpr double kLeast = 1e-9;
-  const double stop = to_seconds(plan_->stream.window.stop_time);
+  const double stop = to_seconds(plan_->stream.window.stop_length);
   return std::max({kFactor * acceleration_[d], kFactor * velocity_[d] / stop, kLeast});
 }
 
@@ -320,9 +320,9 @@ void CurveWatch::check_end() {
 bool CurveWatch::is_of_kind(ipc::EndKind kind) const {
   using ipc::EndKind;
   const Piece& piece = last();
-  const bool can_tell =
+  const bool is_decidable =
       !is_replaced_ && summary_.refused == 0 && !plan_->stream.window.interpolant.method->smooths();
-  const bool may_be_there = !can_tell || rests_at_newest();
+  const bool may_be_there = !is_decidable || rests_at_newest();
   const bool is_late = summary_.end_lateness == piece.right - newest_waypoint();
   switch (kind) {
     case EndKind::none:
@@ -337,7 +337,7 @@ bool CurveWatch::is_of_kind(ipc::EndKind kind) const {
     case EndKind::as_requested:
       break;
   }
-  const bool is_in_time = !can_tell || piece.right == newest_waypoint();
+  const bool is_in_time = !is_decidable || piece.right == newest_waypoint();
   return piece.kind != SegmentKind::spline || (may_be_there && is_in_time);
 }
 

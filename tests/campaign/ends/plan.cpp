@@ -62,21 +62,21 @@ void choose_method(StreamPlan& plan, Random& random) {
   plan.window.settle = method.smooths()     ? 8 + random.below(9)
                        : method.converges() ? 2 + random.below(8)
                                             : method.look_ahead + random.below(3);
-  plan.window.force_lag = method.smooths();
+  plan.window.accepts_short_lag = method.smooths();
   constexpr std::array kTails{Tail::bessel, Tail::bessel, Tail::parabolic, Tail::natural,
                               Tail::clamped};
   plan.window.tail = kTails[random.below(kTails.size())];
   plan.window.start = {.kind = ConditionKind::halt, .value = {}};
   plan.window.held_before_start = true;
-  plan.window.stop_time = log_between(random, milliseconds(2), milliseconds(500));
+  plan.window.stop_length = log_between(random, milliseconds(2), milliseconds(500));
 }
 
 void choose_times(StreamPlan& plan, Random& random) {
   plan.begin = seconds(1000);
   plan.interval = log_between(random, milliseconds(1), milliseconds(100));
-  plan.live.freeze_ahead = log_between(random, milliseconds(1), milliseconds(20));
-  plan.live.min_entry =
-      random.chance(0.5) ? plan.live.freeze_ahead : random.part(plan.live.freeze_ahead, 0.3, 3);
+  plan.live.settle_ahead = log_between(random, milliseconds(1), milliseconds(20));
+  plan.live.least_entry =
+      random.chance(0.5) ? plan.live.settle_ahead : random.part(plan.live.settle_ahead, 0.3, 3);
   plan.live.history =
       random.chance(0.3) ? Time(0) : log_between(random, milliseconds(5), seconds(1));
 }
@@ -106,7 +106,7 @@ void make_motion(LifePlan& life, Random& random) {
   if (is_rough) source.change_mode();
   const std::size_t count = 3 + random.below(random.chance(0.2) ? 60 : 20);
   const bool has_odd_end = random.chance(0.4);
-  Time t = plan.begin + life.lead + plan.live.freeze_ahead + milliseconds(1);
+  Time t = plan.begin + life.lead + plan.live.settle_ahead + milliseconds(1);
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_odd = i + 1 == count && has_odd_end;
     if (i > 0) t += is_odd ? log_between(random, microseconds(1), seconds(1)) : plan.interval;
@@ -211,7 +211,7 @@ void choose_end(LifePlan& life, Random& random) {
   const auto& times = life.motion.times;
   const Time last = times.back();
   const Time sent = last - life.lead;
-  const Time ahead = plan.live.freeze_ahead;
+  const Time ahead = plan.live.settle_ahead;
   switch (life.when) {
     case When::early:
       life.end_at = random.chance(0.5) ? sent : random.between(sent, std::max(sent, last));
@@ -220,10 +220,10 @@ void choose_end(LifePlan& life, Random& random) {
       life.end_at = random.between(times[times.size() - 2] - ahead, last);
       break;
     case When::in_stop:
-      life.end_at = random.between(last - ahead, last + plan.window.stop_time);
+      life.end_at = random.between(last - ahead, last + plan.window.stop_length);
       break;
     case When::at_rest:
-      life.end_at = last + plan.window.stop_time + random.part(ahead, 0, 20);
+      life.end_at = last + plan.window.stop_length + random.part(ahead, 0, 20);
   }
   life.end_at = std::max(life.end_at, sent);
   life.finish_after = random.chance(0.3) ? Time(0) : random.part(ahead, 0, 30);
@@ -233,10 +233,10 @@ void choose_law(LifePlan& life, Random& random) {
   if (!random.chance(0.25)) return;
   life.stream.live.follows_law = true;
   life.rate = random.chance(0.3) ? 1 : random.log_uniform(0.1, 3);
-  life.stream.window.largest_rate = life.rate;
+  life.stream.window.max_rate = life.rate;
   if (!random.chance(0.5)) return;
   life.held_at = random.between(life.motion.times.front(), life.end_at + milliseconds(20));
-  life.held_for = random.part(life.stream.live.freeze_ahead, 1, 40);
+  life.held_for = random.part(life.stream.live.settle_ahead, 1, 40);
 }
 
 }  // namespace

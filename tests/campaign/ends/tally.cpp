@@ -74,7 +74,7 @@ constexpr std::array<std::string_view, 8> kConditionNames{
 constexpr std::array<std::string_view, kDimensionKinds> kKindNames{"linear", "periodic",
                                                                    "quaternion", "quaternion-wxyz"};
 
-constexpr std::uint64_t kTold = 40;  ///< violations of one rule that are written one by one
+constexpr std::uint64_t kReported = 40;  ///< violations of one rule that are written one by one
 
 /// Sorts, and returns the value below which this share of the values is; 0 without values.
 double quantile(std::vector<double>& values, double share) {
@@ -119,7 +119,7 @@ void Tally::begin_life(const LifePlan& plan) {
 void Tally::breach(Rule rule, const std::string& what) {
   const auto row = static_cast<std::size_t>(rule);
   life_failed_ = true;
-  if (++breaches_[row] > kTold) return;
+  if (++breaches_[row] > kReported) return;
   say_one_by_one(fmt::format("seed {} ({}): {}: {}", seed_, description_, kViolations[row], what));
 }
 

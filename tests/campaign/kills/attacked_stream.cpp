@@ -245,15 +245,16 @@ void AttackedStream::count_items() {
   findings_.withdrawn += summary_.withdrawn;
   const auto left = ring();
   const ipc::Word appended = left ? left->appended() : 0;
-  const ipc::Word told = summary_.knots + summary_.refused + summary_.withdrawn + summary_.controls;
-  const ipc::Word most = std::max({appended, told, journal_->accepted.load()});
-  const ipc::Word least = std::min(appended, told);
+  const ipc::Word accounted =
+      summary_.knots + summary_.refused + summary_.withdrawn + summary_.controls;
+  const ipc::Word most = std::max({appended, accounted, journal_->accepted.load()});
+  const ipc::Word least = std::min(appended, accounted);
   if (most == least) return;
   findings_.lost += most - least;
   apps::say(
       fmt::format("'{}': {} items in the ring, {} reported as accepted, {} counted by the "
                   "solver",
-                  plan_.stream, appended, journal_->accepted.load(), told));
+                  plan_.stream, appended, journal_->accepted.load(), accounted));
 }
 
 void AttackedStream::remove_at_end() {

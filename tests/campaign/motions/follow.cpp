@@ -28,7 +28,7 @@ constexpr Time kLead = milliseconds(200);
 constexpr Time kPlayed = std::chrono::seconds(20);
 /// A curve may meet no waypoint for this long without saying so: until it says so, plus the longest
 /// entry to one and the lead.
-constexpr Time kSilent = ipc::kUnmetTold + core::EntrySearch::kLongest + kLead;
+constexpr Time kSilent = ipc::kUnmetReported + core::EntrySearch::kLongest + kLead;
 
 /// Waypoints of one dimension that a curve within the limits cannot all meet.
 struct Source {
@@ -79,8 +79,8 @@ struct Followed {
   std::uint64_t beyond = 0;  ///< settled segments that exceed a limit
   std::uint64_t unsaid =
       0;  ///< looks at a curve that has met none for kSilent and has said nothing
-  std::uint64_t told_none = 0;
-  std::uint64_t told_cannot = 0;
+  std::uint64_t reported_none = 0;
+  std::uint64_t reported_cannot = 0;
   std::uint64_t unaccounted = 0;
 };
 
@@ -121,7 +121,7 @@ class FollowRun {
     how.limits.acceleration = {source.acceleration_limit};
     if (source.lambda > 0) {
       how.interpolant = {.method = find_method("smoothing"), .lambda = source.lambda};
-      how.force_lag = true;
+      how.accepts_short_lag = true;
     }
     return how;
   }
@@ -154,8 +154,8 @@ class FollowRun {
     if (summary.consumed != summary.knots + summary.refused + controls) ++seen_.unaccounted;
     const ipc::Following now_following = summary.following();
     if (now_following != following_) {
-      seen_.told_none += now_following == ipc::Following::meets_none ? 1U : 0U;
-      seen_.told_cannot += now_following == ipc::Following::cannot_follow ? 1U : 0U;
+      seen_.reported_none += now_following == ipc::Following::meets_none ? 1U : 0U;
+      seen_.reported_cannot += now_following == ipc::Following::cannot_follow ? 1U : 0U;
     }
     following_ = now_following;
     look_at_segments();
@@ -218,8 +218,8 @@ std::string text_of(const Followed& seen) {
       "{}; path "
       "error p99: {}; largest path error: {}; peak velocity: {:.4g}; peak acceleration: {:.4g}",
       summary.interpolated(), summary.passed_over, summary.refused, seen.not_sent,
-      summary.exceeding, seen.told_none, seen.told_cannot, error(0.5), error(0.99), error(1),
-      seen.velocity, seen.acceleration);
+      summary.exceeding, seen.reported_none, seen.reported_cannot, error(0.5), error(0.99),
+      error(1), seen.velocity, seen.acceleration);
 }
 
 /// Sums over all runs with Beyond::enter; accounts over all runs.
@@ -236,7 +236,7 @@ struct FollowFindings {
     if (beyond_what != Beyond::enter) return;
     beyond += seen.beyond;
     unsaid += seen.unsaid;
-    gave_up += seen.told_cannot;
+    gave_up += seen.reported_cannot;
     if (seen.beyond + seen.unsaid == 0) return;
     apps::say(fmt::format("{}, seed {}: {} segments beyond a limit, {} looks at a silent curve",
                           source.name, seed, seen.beyond, seen.unsaid));

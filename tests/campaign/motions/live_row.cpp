@@ -159,7 +159,7 @@ void LiveRow::start_reader() {
 
 void LiveRow::run_solver() const {
   const MonotonicClock clock;
-  SolverOptions options{.stop_time = core::WindowOptions{}.stop_time};
+  SolverOptions options{.stop_time = core::WindowOptions{}.stop_length};
   if (limit_ > 0) options.limits = MotionLimits{.acceleration = {limit_}};
   Solver solver(stream_, options);
   while (!apps::stop_requested()) {

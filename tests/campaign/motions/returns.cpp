@@ -107,7 +107,7 @@ class ReturnRun {
     if (how.interpolant.method->smooths()) {
       how.interpolant.lambda = 1e-12;
       how.settle = 8;
-      how.force_lag = true;
+      how.accepts_short_lag = true;
     }
     how.start = {.kind = ConditionKind::halt, .value = {}};
     how.held_before_start = true;
@@ -126,14 +126,14 @@ class ReturnRun {
     const Time length = to_time(random_.log_uniform(0.05, 1));
     const Fault last = random_.chance(0.7) ? Fault::silence : Fault::death;
     faults_.push_back({last, kLastFault - length, kLastFault});
-    for (const Planned& hiccup : faults_) {
-      counts_->silences += hiccup.kind == Fault::silence ? 1U : 0U;
-      counts_->delays += hiccup.kind == Fault::delay ? 1U : 0U;
+    for (const Planned& fault : faults_) {
+      counts_->silences += fault.kind == Fault::silence ? 1U : 0U;
+      counts_->delays += fault.kind == Fault::delay ? 1U : 0U;
     }
   }
   [[nodiscard]] bool is_in(Fault kind) const {
-    return std::ranges::any_of(faults_, [&](const Planned& hiccup) {
-      return hiccup.kind == kind && now_ >= hiccup.from && now_ < hiccup.until;
+    return std::ranges::any_of(faults_, [&](const Planned& fault) {
+      return fault.kind == kind && now_ >= fault.from && now_ < fault.until;
     });
   }
   [[nodiscard]] bool is_silent() const { return is_in(Fault::silence); }
@@ -151,9 +151,9 @@ class ReturnRun {
   }
 
   void produce() {
-    for (Planned& hiccup : faults_) {
-      if (hiccup.kind != Fault::replacement || now_ < hiccup.from) continue;
-      hiccup.from = Time::max();
+    for (Planned& fault : faults_) {
+      if (fault.kind != Fault::replacement || now_ < fault.from) continue;
+      fault.from = Time::max();
       replace();
     }
     const bool is_late = is_in(Fault::delay);
@@ -200,11 +200,11 @@ class ReturnRun {
   /// two-phase motion reaches the path, plus 0.5 s.
   void measure_distance() {
     constexpr Time kLook = milliseconds(5);
-    constexpr double kBesides = 0.5;
+    constexpr double kAllowance = 0.5;
     if (!has_values(sampler_.preview(kBegin + now_, state_.ref()))) return;
     Time least = kLook;
     while (now_ + least < kEnd && !reaches_path(to_seconds(least))) least += kLook;
-    allowed_ = 2 * least + to_time(kBesides);
+    allowed_ = 2 * least + to_time(kAllowance);
   }
   [[nodiscard]] bool reaches_path(double time) const {
     const double t = to_seconds(now_) + time;
@@ -233,15 +233,15 @@ class ReturnRun {
     // The return must be in time, and the curve on the path at the end.
     if (!back_at_ || !allowed_) {
       ++counts_->never_back;
-      return tell("never back on the waypoints");
+      return notify("never back on the waypoints");
     }
     const Time taken = std::max(Time(0), *back_at_ - kLastFault);
     const double share = to_seconds(taken) / to_seconds(*allowed_);
     counts_->shares.push_back(share);
     if (share > 1) {
       ++counts_->late_returns;
-      tell(fmt::format("back after {:.3f} s, allowed: {:.3f} s", to_seconds(taken),
-                       to_seconds(*allowed_)));
+      notify(fmt::format("back after {:.3f} s, allowed: {:.3f} s", to_seconds(taken),
+                         to_seconds(*allowed_)));
     }
     const Time at = kEnd - lead_;
     constexpr double kNear = 1e-3;
@@ -250,10 +250,10 @@ class ReturnRun {
       const double error = state_.position()[d] - motion_.at(d, to_seconds(at));
       if (std::abs(error) < kNear) continue;
       ++counts_->off_path;
-      return tell(fmt::format("{} rad off the path at the end", error));
+      return notify(fmt::format("{} rad off the path at the end", error));
     }
   }
-  void tell(const std::string& what) const {
+  void notify(const std::string& what) const {
     apps::say(fmt::format("seed {} ({}, {:.1f} ms, lead {:.0f} ms, limit {:.1f}): {}", seed_,
                           stream_.window.interpolant.method->name, to_seconds(interval_) * 1e3,
                           to_seconds(lead_) * 1e3, limit_, what));
@@ -289,10 +289,10 @@ Result run_returns(const CampaignOptions& options) {
   const MonotonicClock clock;
   const Time begin = clock.now();
   ReturnCounts counts;
-  const auto goes_on = [&] {
+  const auto continues = [&] {
     return options.runs > 0 ? counts.runs < options.runs : cpu_seconds() < options.seconds;
   };
-  for (std::uint64_t seed = options.seed; goes_on() && !apps::stop_requested(); ++seed) {
+  for (std::uint64_t seed = options.seed; continues() && !apps::stop_requested(); ++seed) {
     ReturnRun(seed, options.beyond, counts).run();
   }
   std::ranges::sort(counts.shares);

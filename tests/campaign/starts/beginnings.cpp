@@ -114,12 +114,12 @@ bool Beginnings::send_first() {
   if (continues) {
     facts_.count(moves ? Event::continued_in_motion : Event::continued_at_rest);
   }
-  const bool goes_on = continues && random_.chance(0.4);
+  const bool extends = continues && random_.chance(0.4);
   Time margin = random_.between(milliseconds(-10), milliseconds(50));
   for (int i = 0; i < kTries; ++i) {
-    const Time t = goes_on ? std::max(producer_->last_time() + interval_, producer_->earliest())
+    const Time t = extends ? std::max(producer_->last_time() + interval_, producer_->earliest())
                            : producer_->earliest() + margin;
-    if (!goes_on) path_ = new_path(t);
+    if (!extends) path_ = new_path(t);
     const std::uint64_t items = producer_->appended();
     const AppendStatus status = try_first(t);
     note(status);

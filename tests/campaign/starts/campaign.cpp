@@ -21,11 +21,11 @@ Result run_starts(const CampaignOptions& options) {
   const MonotonicClock clock;
   const Time begin = clock.now();
   starts::Facts facts;
-  const auto goes_on = [&](std::uint64_t seed) {
+  const auto continues = [&](std::uint64_t seed) {
     return options.runs > 0 ? (seed - options.seed) * kOfOneName < options.runs
                             : cpu_seconds() < options.seconds;
   };
-  for (std::uint64_t seed = options.seed; goes_on(seed) && !apps::stop_requested(); ++seed) {
+  for (std::uint64_t seed = options.seed; continues(seed) && !apps::stop_requested(); ++seed) {
     Random random(seed);
     starts::Beginnings(seed, random, facts).play(kOfOneName);
   }

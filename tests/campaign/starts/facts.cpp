@@ -62,8 +62,8 @@ std::string_view to_string(Event event) noexcept {
 }
 
 void Facts::breach(Breach breach, std::uint64_t seed, const std::string& what) {
-  constexpr std::uint64_t kTold = 20;
-  if (++breaches[static_cast<std::size_t>(breach)] > kTold) return;
+  constexpr std::uint64_t kReported = 20;
+  if (++breaches[static_cast<std::size_t>(breach)] > kReported) return;
   apps::say(fmt::format("seed {}: {}: {}", seed, to_string(breach), what));
 }
 

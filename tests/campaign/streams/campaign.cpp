@@ -21,7 +21,7 @@ constexpr time_t kHangsAfter = 120;
 volatile std::sig_atomic_t is_running = 0;
 std::array<char, 96> hang_text{};
 
-void tell_hang(int /*signal*/) {
+void report_hang(int /*signal*/) {
   if (is_running == 0) return;
   std::size_t length = 0;
   while (length < hang_text.size() && hang_text[length] != 0) ++length;
@@ -37,7 +37,7 @@ class HangGuard {
                   "splinecast_campaign: seed %llu: hangs: unbounded step\n",
                   static_cast<unsigned long long>(seed));
     is_running = 1;
-    (void)std::signal(SIGPROF, tell_hang);
+    (void)std::signal(SIGPROF, report_hang);
     limit(kHangsAfter);
   }
   HangGuard(const HangGuard&) = delete;
@@ -80,10 +80,10 @@ Result run_streams(const CampaignOptions& options) {
   const MonotonicClock clock;
   const Time begin = clock.now();
   StreamFindings findings;
-  const auto goes_on = [&] {
+  const auto continues = [&] {
     return options.runs > 0 ? findings.streams() < options.runs : cpu_seconds() < options.seconds;
   };
-  for (std::uint64_t seed = options.seed; goes_on() && !apps::stop_requested(); ++seed) {
+  for (std::uint64_t seed = options.seed; continues() && !apps::stop_requested(); ++seed) {
     run_stream(seed, findings);
   }
   const double seconds = to_seconds(clock.now() - begin);

@@ -80,7 +80,7 @@ constexpr std::array kStatusesToSee{SampleStatus::settled,       SampleStatus::p
 constexpr std::array<std::string_view, kLimitClasses> kLimitNames{"no", "generous", "tight"};
 
 /// Number of breaches of one campaign that are reported individually.
-constexpr std::uint64_t kTold = 100;
+constexpr std::uint64_t kReported = 100;
 
 template <std::size_t N>
 std::uint64_t sum(const std::array<std::uint64_t, N>& counters) {
@@ -117,7 +117,7 @@ void StreamFindings::begin_stream(const StreamPlan& plan) {
 void StreamFindings::breach(Breach breach, const std::string& what) {
   ++breaches_[static_cast<std::size_t>(breach)];
   stream_failed_ = true;
-  if (sum(breaches_) <= kTold) {
+  if (sum(breaches_) <= kReported) {
     apps::say(fmt::format("seed {} ({}): {}: {}", seed_, description_, to_string(breach), what));
   }
 }

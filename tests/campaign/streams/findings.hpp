@@ -26,15 +26,15 @@ enum class Breach : std::uint8_t {
   settled_back,      ///< settled_until decreased, or a step settled less than freeze-ahead
   unsettled_at_now,  ///< a sample at now that has not settled although the solver was in time
   false_revised,     ///< `revised` although no sampled value has changed
-  change_not_told,   ///< a sampled value has changed without `revised`
-  miscounted,        ///< wrong count of late_commits or deadline_misses
-  stop_late,         ///< a stop did not take effect in the step after it
-  unbounded_step,    ///< more clock readings or items than a step may take
-  board_refused,     ///< a solver found damage on a board that only solvers had written
-  ring_torn,         ///< an item of the ring differs from the one that was sent
-  not_verified,      ///< a repeated solve gives a curve with other bits
-  beyond_limits,     ///< an entry or a stop exceeds both a limit and its own initial value
-  stop_turned,       ///< a stop speeds up, reverses or moves further than |v|·T/2
+  change_not_reported,  ///< a sampled value has changed without `revised`
+  miscounted,           ///< wrong count of late_commits or deadline_misses
+  stop_late,            ///< a stop did not take effect in the step after it
+  unbounded_step,       ///< more clock readings or items than a step may take
+  board_refused,        ///< a solver found damage on a board that only solvers had written
+  ring_torn,            ///< an item of the ring differs from the one that was sent
+  not_verified,         ///< a repeated solve gives a curve with other bits
+  beyond_limits,        ///< an entry or a stop exceeds both a limit and its own initial value
+  stop_turned,          ///< a stop speeds up, reverses or moves further than |v|·T/2
 };
 inline constexpr std::size_t kBreaches = 20;
 [[nodiscard]] std::string_view to_string(Breach breach) noexcept;

@@ -109,15 +109,15 @@ std::vector<double> make_limits(const StreamPlan& plan, double times, Random& ra
 
 core::WindowOptions make_window(const StreamPlan& plan, Random& random) {
   core::WindowOptions window{.interpolant = make_interpolant(plan.seed, plan.interval, random)};
-  window.settle = make_settle(window.interpolant, random, window.force_lag);
+  window.settle = make_settle(window.interpolant, random, window.accepts_short_lag);
   constexpr std::array kTails{Tail::bessel, Tail::parabolic, Tail::natural, Tail::clamped};
   window.tail = kTails[random.below(kTails.size())];
   window.start = make_start(random);
   window.held_before_start = true;
-  window.stop_time = log_between(random, milliseconds(5), seconds(1));
+  window.stop_length = log_between(random, milliseconds(5), seconds(1));
   if (plan.limit_class == LimitClass::none) return window;
   const bool is_tight = plan.limit_class == LimitClass::tight;
-  window.stop_time = core::kLeastStopTime;
+  window.stop_length = core::kLeastStopTime;
   window.limits.acceleration = make_limits(
       plan, is_tight ? random.log_uniform(0.5, 20) : random.log_uniform(100, 1e5), random);
   return window;
@@ -131,13 +131,13 @@ void choose_times(StreamPlan& plan, Random& random) {
   plan.tick = milliseconds(1);
   if (plan.length < seconds(2)) plan.tick = log_between(random, microseconds(50), milliseconds(2));
   const Time least = std::max<Time>(microseconds(500), plan.length / 20'000);
-  plan.live.freeze_ahead = log_between(random, least, std::max<Time>(least, milliseconds(50)));
-  plan.live.min_entry =
-      random.chance(0.5) ? plan.live.freeze_ahead : random.part(plan.live.freeze_ahead, 0.3, 3);
+  plan.live.settle_ahead = log_between(random, least, std::max<Time>(least, milliseconds(50)));
+  plan.live.least_entry =
+      random.chance(0.5) ? plan.live.settle_ahead : random.part(plan.live.settle_ahead, 0.3, 3);
   plan.live.history =
       random.chance(0.2) ? Time(0) : log_between(random, milliseconds(5), seconds(1));
-  if (random.chance(0.3)) plan.ingest.min_interval = random.part(plan.interval, 0.1, 1);
-  if (random.chance(0.3)) plan.ingest.max_interval = random.part(plan.interval, 2, 30);
+  if (random.chance(0.3)) plan.ingest.least = random.part(plan.interval, 0.1, 1);
+  if (random.chance(0.3)) plan.ingest.most = random.part(plan.interval, 2, 30);
 }
 
 void choose_motion(StreamPlan& plan, Random& random) {

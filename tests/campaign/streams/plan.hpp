@@ -23,7 +23,7 @@ struct StreamPlan {
   core::WindowOptions window{};
   LimitClass limit_class = LimitClass::none;
   ipc::LiveOptions live{};
-  IngestLimits ingest{};
+  ipc::IntervalRange ingest{};
   std::size_t ring_capacity = 0;
   std::size_t board_capacity = 0;
   Time begin{};             ///< clock reading at the creation of the stream

@@ -85,14 +85,14 @@ void RevisionCheck::check_counts(const Summary& before) {
   }
 }
 
-/// `settled_until` never decreases, and each revision settles the curve up to freeze_ahead after
+/// `settled_until` never decreases, and each revision settles the curve up to settle_ahead after
 /// the start of its step.
 void RevisionCheck::check_settled_until(const Summary& before, Time now) {
   const bool had_curve = before.newest > 0;
   const bool is_back = had_curve && summary_.settled_until < before.settled_until;
   const bool is_late = summary_.revision != before.revision && summary_.newest > 0 &&
                        !summary_.finished &&
-                       summary_.settled_until < now + plan_->live.freeze_ahead;
+                       summary_.settled_until < now + plan_->live.settle_ahead;
   if (is_back || is_late) {
     breach(Breach::settled_back,
            fmt::format("settled until {}, before {}, step began at {}",
@@ -196,15 +196,15 @@ void RevisionCheck::check_settled_segments() {
     } else if (joined_ > 0) {
       const auto step = rules_.step(segments[joined_ - 1], segment);
       findings_->count(Event::knots_compared);
-      const auto tell = [&](Breach what, double size) {
+      const auto notify = [&](Breach what, double size) {
         breach(what, fmt::format("{} times the tolerance for rounding, at {}, before segment {}",
                                  size, segment.left.count(), segment.number));
       };
       if (segments[joined_ - 1].right != segment.left) {
-        tell(Breach::position_step, 0);
+        notify(Breach::position_step, 0);
       }
-      if (step.position > 1) tell(Breach::position_step, step.position);
-      if (step.velocity > 1) tell(Breach::velocity_step, step.velocity);
+      if (step.position > 1) notify(Breach::position_step, step.position);
+      if (step.velocity > 1) notify(Breach::velocity_step, step.velocity);
     }
     check_waypoint_at(segment);
   }
@@ -358,7 +358,7 @@ void RevisionCheck::check_stop() {
   const bool starts_later = copy_.number == 1;  // the curve stops from the start of the motion
   if (summary_.consumed > stop.item && (!moves || starts_later)) return;
   const bool has_limits = !plan_->window.limits.acceleration.empty();
-  if (copy_.left > effect || (!has_limits && copy_.right > effect + plan_->window.stop_time)) {
+  if (copy_.left > effect || (!has_limits && copy_.right > effect + plan_->window.stop_length)) {
     breach(Breach::stop_late,
            fmt::format("item {} from {}, due at {}: the curve ends at {}", stop.item,
                        stop.time.count(), effect.count(), copy_.right.count()));

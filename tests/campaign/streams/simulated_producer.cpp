@@ -37,7 +37,7 @@ SimulatedProducer::SimulatedProducer(const StreamPlan& plan, testing::MemoryStre
       source_(plan, random),
       observed_(plan.dimensions.size()),
       phase_end_(plan.begin),
-      next_(plan.begin + random.part(plan.live.freeze_ahead, 0, 3)),
+      next_(plan.begin + random.part(plan.live.settle_ahead, 0, 3)),
       next_waypoint_(plan.begin) {}
 
 ipc::WaypointRingWriter::Solved SimulatedProducer::solved() {
@@ -68,7 +68,7 @@ void SimulatedProducer::act(Time now) {
 
 void SimulatedProducer::start(Time now) {
   has_started_ = true;
-  lead_ = plan_->live.freeze_ahead + plan_->live.min_entry + plan_->interval;
+  lead_ = plan_->live.settle_ahead + plan_->live.least_entry + plan_->interval;
   next_waypoint_ = now + lead_;
   if (!plan_->starts_in_motion) return;
   const Waypoint state = source_.smooth_at(now + lead_);
@@ -84,7 +84,7 @@ void SimulatedProducer::change_phase(Time now) {
   phase_ = kPhases[random_->below(kPhases.size())];
   phase_end_ = now + random_->part(plan_->interval, 3, 60);
   source_.change_mode();
-  const Time enough = plan_->live.freeze_ahead + plan_->live.min_entry;
+  const Time enough = plan_->live.settle_ahead + plan_->live.least_entry;
   switch (phase_) {
     case Phase::late:
       lead_ = random_->part(enough, -0.2, 1.2);
@@ -93,8 +93,8 @@ void SimulatedProducer::change_phase(Time now) {
       lead_ = enough + random_->part(plan_->interval, 30, 400);
       break;
     case Phase::silent:
-      phase_end_ = now + lead_ + random_->part(plan_->live.freeze_ahead, 0, 200);
-      lead_ = enough + plan_->window.stop_time;
+      phase_end_ = now + lead_ + random_->part(plan_->live.settle_ahead, 0, 200);
+      lead_ = enough + plan_->window.stop_length;
       break;
     default:
       lead_ = enough + random_->part(plan_->interval, 0.2, 25);
@@ -106,9 +106,9 @@ void SimulatedProducer::send_due(Time now) {
     next_ = phase_end_;
     return;
   }
-  const Time earliest = now + plan_->live.freeze_ahead;
+  const Time earliest = now + plan_->live.settle_ahead;
   if (next_waypoint_ < earliest && random_->chance(kSkipsWhatIsPast)) {
-    next_waypoint_ = std::max(next_waypoint_, now + std::max(lead_, plan_->live.freeze_ahead));
+    next_waypoint_ = std::max(next_waypoint_, now + std::max(lead_, plan_->live.settle_ahead));
   }
   is_full_ = false;
   for (int sent = 0; sent < kMostAtOnce && !is_full_ && next_waypoint_ - lead_ <= now; ++sent) {
@@ -152,13 +152,13 @@ Time SimulatedProducer::replacement_time(Time now) {
     case 0:
       return settled;
     case 1:
-      return settled + random_->part(plan_->live.freeze_ahead, 0, 3);
+      return settled + random_->part(plan_->live.settle_ahead, 0, 3);
     case 2:
       return last > settled ? random_->between(settled, last) : settled + plan_->interval;
     case 3:
       return std::max(last, settled) + random_->part(plan_->interval, 0, 20);
     default:
-      return settled - random_->part(plan_->live.freeze_ahead, 0, 3);
+      return settled - random_->part(plan_->live.settle_ahead, 0, 3);
   }
 }
 
@@ -173,7 +173,7 @@ void SimulatedProducer::replace(Time now) {
     return std::span<const double>(values.back());
   };
   values.reserve(3 * count);
-  Time at = t + random_->part(plan_->live.min_entry, 0.5, 4);
+  Time at = t + random_->part(plan_->live.least_entry, 0.5, 4);
   for (std::size_t i = 0; i < count; ++i) {
     at += random_->part(plan_->interval, 0.5, 1.5);
     const Waypoint waypoint = source_.at(at);
@@ -201,7 +201,7 @@ void SimulatedProducer::stop(Time now) {
   next_waypoint_ = t + plan_->interval;
   if (random_->chance(0.5)) return;
   phase_ = Phase::silent;
-  phase_end_ = now + random_->part(plan_->window.stop_time, 0, 2);
+  phase_end_ = now + random_->part(plan_->window.stop_length, 0, 2);
 }
 
 /// Makes a call that is refused.

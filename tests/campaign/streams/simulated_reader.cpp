@@ -115,7 +115,7 @@ void SimulatedReader::read_executed_again() {
   if (!has_values(sampler_.preview(seen.time, again_.ref()))) return;
   if (same_bits(again_.values(), seen.values)) return;
   findings_->breach(
-      Breach::change_not_told,
+      Breach::change_not_reported,
       fmt::format("sample at {}: {}, revision {}", seen.time.count(),
                   difference(seen.values, again_.values()), sampler_.revision_seen()));
   executed_.clear();

@@ -41,7 +41,7 @@ SimulatedStream::SimulatedStream(const StreamPlan& plan, StreamFindings& finding
       next_seldom_(now_),
       next_look_(now_),
       next_step_(now_),
-      pace_(random.part(plan.live.freeze_ahead, 0.05, 0.5)) {
+      pace_(random.part(plan.live.settle_ahead, 0.05, 0.5)) {
   stream_.replace_producer();
   stream_.beyond = plan.beyond;
   stream_.replace_solver();
@@ -106,7 +106,7 @@ void SimulatedStream::check_kept_up(SampleStatus status) {
 }
 
 void SimulatedStream::read_seldom() {
-  next_seldom_ = now_ + random_->part(plan_.live.freeze_ahead, 20, 120);
+  next_seldom_ = now_ + random_->part(plan_.live.settle_ahead, 20, 120);
   (void)log_.catch_up();
   (void)seldom_.sample(now_, settled_);
 }
@@ -114,7 +114,7 @@ void SimulatedStream::read_seldom() {
 void SimulatedStream::look_around() {
   next_look_ = now_ + random_->part(plan_.tick, 2, 20);
   (void)log_.catch_up();
-  const Time ahead = plan_.live.freeze_ahead + plan_.interval * 10;
+  const Time ahead = plan_.live.settle_ahead + plan_.interval * 10;
   const Time t = random_->between(now_ - plan_.live.history - ahead, now_ + ahead);
   (void)previewer_.preview(t, settled_);
   if (random_->chance(0.2)) (void)eager_.sample(random_->between(now_, now_ + ahead), settled_);
@@ -138,7 +138,7 @@ bool SimulatedStream::settle_without_step() {
   if (has_items || !stream_.solver.settled_raise().raise(now_)) return false;
   findings_->count(Event::settled_raises);
   check_.look(now_);
-  if (was_in_time_) kept_up_until_ = now_ + plan_.live.freeze_ahead / 2;
+  if (was_in_time_) kept_up_until_ = now_ + plan_.live.settle_ahead / 2;
   return true;
 }
 
@@ -183,24 +183,24 @@ void SimulatedStream::check_step(const StepResult& result, ipc::Word misses, ipc
     }
   }
   const bool keeps_up = !result.missed && was_in_time_ && check_.summary().newest > 0;
-  kept_up_until_ = keeps_up ? began + plan_.live.freeze_ahead / 2 : Time::min();
+  kept_up_until_ = keeps_up ? began + plan_.live.settle_ahead / 2 : Time::min();
 }
 
 /// Injects a fault: a delay between two steps or within one, a death within a step, or a takeover.
 void SimulatedStream::step_in_trouble() {
-  const Time pause = random_->part(plan_.live.freeze_ahead, 0.1,
+  const Time pause = random_->part(plan_.live.settle_ahead, 0.1,
                                    random_->chance(0.2) ? random_->log_uniform(1, 200) : 3);
   const std::size_t what = random_->below(6);
   if (what <= 1) {
     findings_->count(Event::solver_hold_ups);
-    clock_.stop_behind_reading(what + 1, pause);
+    clock_.stop_after_reading(what + 1, pause);
     step();
   } else if (what == 2) {
     findings_->count(Event::solver_hold_ups);
     advance_to(now_ + pause);
     step();
   } else if (what == 3) {
-    clock_.stop_behind_reading(3, pause);
+    clock_.stop_after_reading(3, pause);
     step();
   } else if (what == 4) {
     step_and_die();
@@ -229,7 +229,7 @@ void SimulatedStream::step_and_die() {
   findings_->count(Event::torn_takeovers);
   kept_up_until_ = Time::min();
   if (random_->chance(0.7)) {
-    advance_to(now_ + random_->part(plan_.live.freeze_ahead, 0, random_->log_uniform(1, 100)));
+    advance_to(now_ + random_->part(plan_.live.settle_ahead, 0, random_->log_uniform(1, 100)));
   }
   replace_solver();
   step();
@@ -247,7 +247,7 @@ void SimulatedStream::replace_solver() {
 
 /// Schedules the solver's next step: after its pace, or later if it has no work until then.
 void SimulatedStream::schedule_solver() {
-  if (random_->chance(0.01)) pace_ = random_->part(plan_.live.freeze_ahead, 0.02, 0.6);
+  if (random_->chance(0.01)) pace_ = random_->part(plan_.live.settle_ahead, 0.02, 0.6);
   next_step_ = now_ + pace_;
   const bool has_items = stream_.ring.reader.written() != stream_.solver.seen();
   const Time wakes = has_items ? now_ : producer_.next();

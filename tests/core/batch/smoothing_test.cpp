@@ -176,7 +176,7 @@ TEST(Smoothing, ALargeOffsetOfThePositionsCostsNoDigitsOfTheDerivatives) {
   const auto near_curve = fit(waypoints_of(mesh), smoothing(1e-6));
   const auto far_curve = fit(waypoints_of(far), smoothing(1e-6));
   WindowOptions how{.interpolant = smoothing(1e-6).interpolant, .settle = 64};
-  how.force_lag = true;
+  how.accepts_short_lag = true;
   const auto online = testing::online(waypoints_of(far), how, {ConditionKind::own, {}});
   State a(1);
   State b(1);
@@ -265,7 +265,7 @@ double step_left(double ratio, std::size_t lag) {
   const Mesh mesh = noisy_sine(600, 0.05);
   const double h = 0.01;
   WindowOptions how{.interpolant = smoothing(ratio * h * h * h).interpolant, .settle = lag};
-  how.force_lag = true;
+  how.accepts_short_lag = true;
   const auto segments =
       testing::settled_segments(waypoints_of(mesh), how, {ConditionKind::own, {}});
   const auto batch = fit(waypoints_of(mesh), smoothing(ratio * h * h * h));
@@ -320,7 +320,7 @@ TEST(Smoothing, OnlineWithALongLagEqualsTheBatchWithinTheStatedBound) {
 TEST(Smoothing, RefusesALagTooShortForItsLambdaUnlessForced) {
   const auto how = [](std::size_t lag, double lambda, bool force) {
     WindowOptions options{.interpolant = smoothing(lambda).interpolant, .settle = lag};
-    options.force_lag = force;
+    options.accepts_short_lag = force;
     return options;
   };
   EXPECT_THROW(SlidingWindow(1, how(12, 0, false)), std::invalid_argument);

@@ -45,10 +45,10 @@ struct Peaks {
   double jerk = 0;
 };
 
-Peaks sampled_peaks(Time stop_time, double v, double a) {
+Peaks sampled_peaks(Time stop_length, double v, double a) {
   const std::array x{0.0};
   Segment stop(1);
-  build_stop(Time(0), stop_time, x, {&v, 1}, {&a, 1}, stop);
+  build_stop(Time(0), stop_length, x, {&v, 1}, {&a, 1}, stop);
   Peaks peaks;
   for_each_state(stop, 1, [&](const State& at, double) {
     peaks.acceleration = std::max(peaks.acceleration, std::abs(at.acceleration()[0]));
@@ -57,13 +57,13 @@ Peaks sampled_peaks(Time stop_time, double v, double a) {
   return peaks;
 }
 
-Time stop_time(double v, double a, const MotionLimits& limits, Time stop_time = kLeastStopTime,
-               double x = 0) {
-  return stop_time_within({limits, kAllLinear, stop_time}, {Time(0), {&x, 1}, {&v, 1}, {&a, 1}});
+Time stop_length(double v, double a, const MotionLimits& limits, Time stop_length = kLeastStopTime,
+                 double x = 0) {
+  return stop_time_within({limits, kAllLinear, stop_length}, {Time(0), {&x, 1}, {&v, 1}, {&a, 1}});
 }
 
-Time stop_time(double v, double a, double limit, Time least = kLeastStopTime) {
-  return stop_time(v, a, MotionLimits{.acceleration = {limit}}, least);
+Time stop_length(double v, double a, double limit, Time least = kLeastStopTime) {
+  return stop_length(v, a, MotionLimits{.acceleration = {limit}}, least);
 }
 
 TEST(StopSegment, NeverSpeedsUpOrReversesOrTravelsFurtherThanHalfItsTimeAtItsVelocity) {
@@ -153,7 +153,7 @@ TEST(StopSegment, KeepsItsAccelerationLimitFromItsBeginning) {
     const double v = value(random);
     const double a = i % 5 == 0 ? 0 : value(random) * (i % 3 == 0 ? 10 : 1);
     const double limit = 1 + std::abs(value(random));
-    const Time time = stop_time(v, a, limit);
+    const Time time = stop_length(v, a, limit);
     EXPECT_LE(sampled_peaks(time, v, a).acceleration, limit * (1 + 1e-6)) << v << ' ' << a;
     const Time longer = time + milliseconds(1 + i % 400);
     EXPECT_LE(sampled_peaks(longer, v, a).acceleration, limit * (1 + 1e-6)) << v << ' ' << a;
@@ -168,7 +168,7 @@ TEST(StopSegment, TakesNoLongerThanItsAccelerationLimitRequires) {
     const double v = value(random);
     // A deceleration within the limit, or an acceleration, which the stop clamps to 0.
     const double a = std::clamp(value(random), -limit, limit);
-    const Time time = stop_time(v, a, limit);
+    const Time time = stop_length(v, a, limit);
     if (time == kLeastStopTime) continue;
     const bool decelerates = v * a < 0;
     if (!decelerates) {
@@ -182,9 +182,9 @@ TEST(StopSegment, TakesNoLongerThanItsAccelerationLimitRequires) {
 }
 
 TEST(StopSegment, ThatDeceleratesBeyondItsLimitTakesThreeTimesTheVelocityOverTheLimit) {
-  EXPECT_NEAR(to_seconds(stop_time(2, -50, 10)), 0.6, 2e-9);
-  EXPECT_NEAR(to_seconds(stop_time(-2, 50, 10)), 0.6, 2e-9);
-  EXPECT_LE(sampled_peaks(stop_time(2, -50, 10), 2, -50).acceleration, 10 * (1 + 1e-9));
+  EXPECT_NEAR(to_seconds(stop_length(2, -50, 10)), 0.6, 2e-9);
+  EXPECT_NEAR(to_seconds(stop_length(-2, 50, 10)), 0.6, 2e-9);
+  EXPECT_LE(sampled_peaks(stop_length(2, -50, 10), 2, -50).acceleration, 10 * (1 + 1e-9));
 }
 
 TEST(StopSegment, KeepsItsJerkLimit) {
@@ -194,7 +194,7 @@ TEST(StopSegment, KeepsItsJerkLimit) {
     const double v = value(random);
     const double a = 10 * value(random);
     const double limit = 1 + 10 * std::abs(value(random));
-    const Time time = stop_time(v, a, MotionLimits{.jerk = {limit}});
+    const Time time = stop_length(v, a, MotionLimits{.jerk = {limit}});
     EXPECT_LE(sampled_peaks(time, v, a).jerk, limit * (1 + 1e-6)) << v << ' ' << a;
     const double shorter = 0.99 * to_seconds(time);
     EXPECT_GT(sampled_peaks(from_seconds(shorter), v, 0).jerk, limit) << v;
@@ -248,7 +248,7 @@ TEST(StopSegment, IsTheLongestThatKeepsItsBoundsAndNeverShorterThanTheLimitsNeed
     const MotionLimits limits{.acceleration = {60}, .lower = {-1}, .upper = {1}};
     const Instant from{Time(0), {&x, 1}, {&v, 1}, {&a, 1}};
     const Time least = std::max(least_stop_time(limits, kAllLinear, from), Time(1));
-    const Time length = stop_time(v, a, limits, kStop, x);
+    const Time length = stop_length(v, a, limits, kStop, x);
     const Time most = std::max(kStop, least);
     ASSERT_GE(length, least) << i;
     ASSERT_LE(length, most) << i;
@@ -269,11 +269,11 @@ TEST(StopSegment, IsTheLongestThatKeepsItsBoundsAndNeverShorterThanTheLimitsNeed
 
 TEST(StopSegment, TakesTheStopTimeWithBoundsButWithoutALimitOfAcceleration) {
   const MotionLimits bounds{.velocity = {1}, .lower = {-1}, .upper = {1}};
-  EXPECT_EQ(stop_time(2, 0, bounds, milliseconds(250), 0.9), milliseconds(250));
+  EXPECT_EQ(stop_length(2, 0, bounds, milliseconds(250), 0.9), milliseconds(250));
   const MotionLimits without{.acceleration = {0}, .lower = {-1}, .upper = {1}};
-  EXPECT_EQ(stop_time(2, 0, without, milliseconds(250), 0.9), milliseconds(250));
+  EXPECT_EQ(stop_length(2, 0, without, milliseconds(250), 0.9), milliseconds(250));
   const MotionLimits with{.acceleration = {100}, .lower = {-1}, .upper = {1}};
-  EXPECT_EQ(stop_time(2, 0, with, milliseconds(250), 0.9), milliseconds(100));
+  EXPECT_EQ(stop_length(2, 0, with, milliseconds(250), 0.9), milliseconds(100));
 }
 
 /// Angular speed and acceleration of a quaternion x y z w.
@@ -354,10 +354,10 @@ TEST(StopSegment, OfAnyStateTakesAFiniteTime) {
   for (const double v : values) {
     for (const double a : values) {
       for (const double limit : {kTiny, 1e-310, 1e-100, 1e-3, 4.0, 10.0, 1e100}) {
-        const Time time = stop_time(v, a, limit);
+        const Time time = stop_length(v, a, limit);
         EXPECT_GE(time, kLeastStopTime);
         EXPECT_LE(to_seconds(time), 1e6);
-        const Time with_jerk = stop_time(v, a, MotionLimits{.jerk = {limit}});
+        const Time with_jerk = stop_length(v, a, MotionLimits{.jerk = {limit}});
         EXPECT_GE(with_jerk, kLeastStopTime);
         EXPECT_LE(to_seconds(with_jerk), 1e6);
       }
@@ -376,7 +376,7 @@ TEST(StopSegment, IsValidWhileOnePositionRepeatsUntilVelocitiesAreDenormal) {
       window.append({.time = milliseconds(10 * i), .position = {&x, 1}});
       window.segment(window.segments() - 1, last);
       ASSERT_EQ(last.kind, SegmentKind::stop);
-      ASSERT_GE(last.right - last.left, options.stop_time);
+      ASSERT_GE(last.right - last.left, options.stop_length);
     }
   }
 }

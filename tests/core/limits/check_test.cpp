@@ -159,7 +159,7 @@ std::array<double, 3> sampled_rates(const Segment& segment, const DimensionKinds
   return most;
 }
 
-DimensionKinds rotation_behind_one_dimension(DimensionKind kind) {
+DimensionKinds rotation_after_one_dimension(DimensionKind kind) {
   std::vector<Dimension> dimensions(5, {.kind = kind});
   dimensions[0] = {};
   return DimensionKinds(dimensions);
@@ -170,7 +170,7 @@ TEST(LimitCheck, TheLimitsOfAQuaternionApplyToItsAngularMotion) {
   std::uniform_real_distribution<double> value(-1, 1);
   for (int i = 0; i < 60; ++i) {
     const bool w_first = i % 2 == 0;
-    const DimensionKinds kinds = rotation_behind_one_dimension(
+    const DimensionKinds kinds = rotation_after_one_dimension(
         w_first ? DimensionKind::quaternion_wxyz : DimensionKind::quaternion);
     std::vector<double> c(6 * 5);
     for (double& each : c) each = 0.2 * value(random);

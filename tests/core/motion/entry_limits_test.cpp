@@ -66,8 +66,8 @@ TEST(EntrySearch, FindsNothingIfTheEntryOrItsStopLeavesThePositionBounds) {
   const MotionLimits near{.acceleration = {4}, .lower = {-1}, .upper = {0.3}};
   SlidingWindow moving = target_of(1, sine, 5, near);
   const EntryRules near_rules{.limits = &near, .goes_beyond = true};
-  const From behind = at_rest(milliseconds(90), {sine(0.09, 0) - 0.2});
-  EXPECT_EQ(look_for(search, moving, behind, near_rules).outcome, Outcome::none);
+  const From before = at_rest(milliseconds(90), {sine(0.09, 0) - 0.2});
+  EXPECT_EQ(look_for(search, moving, before, near_rules).outcome, Outcome::none);
 }
 
 /// A turn about one axis: (cos φ/2, 0, 0, sin φ/2).

@@ -37,7 +37,7 @@ TEST(Extrapolation, IsAStraightLineAtTheNewestKnotsVelocityFollowedByAStop) {
     Extrapolation extrapolation(3);
     extrapolation.begin(window);
     EXPECT_EQ(extrapolation.line_end(), newest.time + Extrapolation::kLine);
-    EXPECT_EQ(extrapolation.rest(), extrapolation.line_end() + window.options().stop_time);
+    EXPECT_EQ(extrapolation.rest(), extrapolation.line_end() + window.options().stop_length);
     for (const int ms : {0, 1, 100, 250}) {
       const State at = state_of(extrapolation, newest.time + milliseconds(ms), 3);
       for (std::size_t d = 0; d < 3; ++d) {
@@ -49,7 +49,7 @@ TEST(Extrapolation, IsAStraightLineAtTheNewestKnotsVelocityFollowedByAStop) {
     const std::vector<double> zeros(3);
     const State end = state_of(extrapolation, extrapolation.line_end(), 3);
     Segment stop(3);
-    build_stop(extrapolation.line_end(), window.options().stop_time, end.position(),
+    build_stop(extrapolation.line_end(), window.options().stop_length, end.position(),
                newest.velocity, zeros, stop);
     State wanted(3);
     for (const int ms : {1, 77, 249}) {
@@ -93,7 +93,7 @@ TEST(Extrapolation, IsContinuousUpToItsAccelerationAndEndsAtRest) {
 
 TEST(Extrapolation, UsesAtMostFourFifthsOfAVelocityLimitAndStopsWithinTheOthers) {
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
-    WindowOptions how{.stop_time = milliseconds(1)};
+    WindowOptions how{.stop_length = milliseconds(1)};
     how.limits = {.velocity = {3, 0}, .acceleration = {5, 7}, .jerk = {0, 200}};
     const SlidingWindow window = walk(seed, 2, how);
     const Knot newest = window.knot(window.knots() - 1);

@@ -65,7 +65,7 @@ TEST(Plan, AnEntryThatEndsAtTheNewestWaypointMeetsItAlsoIfAnEndFollows) {
 /// The pieces that end a curve are executed at the largest rate of a law, too.
 TEST(PlanSearch, ComparesAnEndWithTheLimitsAtTheLargestRate) {
   core::WindowOptions how;
-  how.largest_rate = 2;
+  how.max_rate = 2;
   how.limits = {.velocity = {1}, .acceleration = {4}, .jerk = {40}};
   core::Plan plan(1, how);
   core::PlanSearch search(1, how, {.is_live = true});

@@ -50,11 +50,11 @@ class FormerEnd : public ::testing::Test {
 };
 
 TEST_F(FormerEnd, IsTakenAgainBeforeTheNextLongerDuration) {
-  const Found anew = look(std::nullopt);
-  ASSERT_EQ(anew.outcome, Outcome::found);
-  ASSERT_FALSE(anew.end.knot);
+  const Found again = look(std::nullopt);
+  ASSERT_EQ(again.outcome, Outcome::found);
+  ASSERT_FALSE(again.end.knot);
   const Time former = between(true);
-  ASSERT_LT(former, anew.end.state.time);
+  ASSERT_LT(former, again.end.state.time);
   for (const int at_once : {kAny, 4, 1}) {
     const Found found = look(former, at_once);
     ASSERT_EQ(found.outcome, Outcome::found);
@@ -65,34 +65,34 @@ TEST_F(FormerEnd, IsTakenAgainBeforeTheNextLongerDuration) {
 }
 
 TEST_F(FormerEnd, BeyondTheLimitsCostsOneTryAndDelaysTheEntryByAtMostOneGrowthStep) {
-  const Found anew = look(std::nullopt);
+  const Found again = look(std::nullopt);
   const Found found = look(between(false));
   ASSERT_EQ(found.outcome, Outcome::found);
   // After the former end the search continues with a duration that is one growth step longer, so
   // the entry is at most one growth step longer than without a former end.
-  EXPECT_GT(found.end.state.time, anew.end.state.time);
+  EXPECT_GT(found.end.state.time, again.end.state.time);
   EXPECT_LE(found.end.state.time - from_.time,
-            (anew.end.state.time - from_.time) * EntrySearch::kGrowth);
-  EXPECT_LE(found.tried, anew.tried + 1);
+            (again.end.state.time - from_.time) * EntrySearch::kGrowth);
+  EXPECT_LE(found.tried, again.tried + 1);
 }
 
 TEST_F(FormerEnd, BeforeTheNewestKnotOrAfterAShorterDurationWithinTheLimitsIsNotTaken) {
-  const Found anew = look(std::nullopt);
+  const Found again = look(std::nullopt);
   for (const Time former :
        {from_.time - milliseconds(1), target_.time(2), target_.time(4),
-        anew.end.state.time + milliseconds(1), anew.end.state.time + std::chrono::seconds(9)}) {
+        again.end.state.time + milliseconds(1), again.end.state.time + std::chrono::seconds(9)}) {
     const Found found = look(former);
     ASSERT_EQ(found.outcome, Outcome::found);
-    EXPECT_EQ(found.end.state.time, anew.end.state.time) << former.count();
-    EXPECT_EQ(found.tried, anew.tried) << former.count();
+    EXPECT_EQ(found.end.state.time, again.end.state.time) << former.count();
+    EXPECT_EQ(found.tried, again.tried) << former.count();
   }
 }
 
 TEST_F(FormerEnd, IsForgottenByTheNextRestart) {
-  const Found anew = look(std::nullopt);
+  const Found again = look(std::nullopt);
   const Time former = between(true);
   ASSERT_EQ(look(former).end.state.time, former);
-  EXPECT_EQ(look(std::nullopt).end.state.time, anew.end.state.time);
+  EXPECT_EQ(look(std::nullopt).end.state.time, again.end.state.time);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ using testing::random_mesh;
 constexpr Tail kTails[] = {Tail::bessel, Tail::parabolic, Tail::natural, Tail::clamped};
 
 WindowOptions options(std::size_t settle, Tail tail, Condition start = {}) {
-  return {.settle = settle, .tail = tail, .start = std::move(start), .stop_time = Time(1000)};
+  return {.settle = settle, .tail = tail, .start = std::move(start), .stop_length = Time(1000)};
 }
 
 std::vector<Segment> online_segments(const Mesh& mesh, const WindowOptions& how,
@@ -142,7 +142,7 @@ TEST(SlidingWindow, PositionAndVelocityNeverStepAndEachSegmentCarriesItsAccelera
 
 TEST(SlidingWindow, TheNewestSegmentComesToRestWhileTheStreamRuns) {
   const Mesh mesh = random_mesh(8, 20, 2, 2);
-  SlidingWindow window(2, {.settle = 4, .stop_time = Time(300'000'000)});
+  SlidingWindow window(2, {.settle = 4, .stop_length = Time(300'000'000)});
   Segment segment(2);
   State state(2);
   for (std::size_t n = 0; n < mesh.size(); ++n) {
@@ -218,7 +218,7 @@ TEST(SlidingWindow, RefusesOptionsOutOfRange) {
   EXPECT_THROW(SlidingWindow(0, {}), std::invalid_argument);
   EXPECT_THROW(SlidingWindow(65, {}), std::invalid_argument);
   EXPECT_THROW(SlidingWindow(1, options(65, Tail::clamped)), std::invalid_argument);
-  EXPECT_THROW(SlidingWindow(1, {.stop_time = Time(0)}), std::invalid_argument);
+  EXPECT_THROW(SlidingWindow(1, {.stop_length = Time(0)}), std::invalid_argument);
   EXPECT_THROW(SlidingWindow(2, options(8, Tail::clamped, {ConditionKind::velocity, {1}})),
                std::invalid_argument);
 }

@@ -52,7 +52,7 @@ TEST(EntrySearch, WithoutALimitAllowsAStartWithinTheObservedVelocityAndAccelerat
 MotionLimits shown_at_30_hz(const Motion& motion, Time step) {
   const double mean =
       std::abs(motion(to_seconds(2 * step), 0) - motion(0, 0)) / to_seconds(2 * step);
-  return {.velocity = {3 * mean}, .acceleration = {mean / to_seconds(WindowOptions().stop_time)}};
+  return {.velocity = {3 * mean}, .acceleration = {mean / to_seconds(WindowOptions().stop_length)}};
 }
 
 TEST(EntrySearch, AllowsNoStartInMidMotionIfThreeWaypointsAreKnown) {

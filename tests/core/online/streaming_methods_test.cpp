@@ -64,8 +64,8 @@ TEST_P(StreamingMethods, SettleAfterAsManyKnotsAsTheyLookAhead) {
   SlidingWindow window(2, options());
   for (std::size_t n = 0; n < 30; ++n) {
     window.append(trial.waypoints()[n]);
-    const std::size_t behind = default_settle(method()) + 1;
-    EXPECT_EQ(window.settled_segments(), n + 1 > behind ? n + 1 - behind : 0);
+    const std::size_t before = default_settle(method()) + 1;
+    EXPECT_EQ(window.settled_segments(), n + 1 > before ? n + 1 - before : 0);
   }
 }
 

@@ -29,13 +29,13 @@ TEST(KnotBoard, RejectsASummaryWithValuesOutOfRange) {
   Summary summary;
   for (const auto& [first, newest] :
        std::vector<std::pair<Word, Word>>{{0, 5}, {6, 5}, {1, 17}, {1, kRetiredTag}}) {
-    Summary lying{.first = first, .newest = newest};
-    board.writer.commit(lying);
+    Summary invalid{.first = first, .newest = newest};
+    board.writer.commit(invalid);
     EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 0, summary)) << newest;
   }
   for (const Time stop : {Time(-1), kLongestStop + Time(1)}) {
-    Summary lying{.first = 1, .newest = 5, .stop = stop};
-    board.writer.commit(lying);
+    Summary invalid{.first = 1, .newest = 5, .stop = stop};
+    board.writer.commit(invalid);
     EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 0, summary)) << stop.count();
   }
 }

@@ -46,7 +46,8 @@ std::vector<std::pair<std::string, std::vector<std::string>>> prototypes(
 TEST_F(CPointers, OfEveryFunctionOfTheHeaderAreTried) {
   std::set<std::tuple<std::string, std::string, std::string>> tried;
   for (const auto& wrong : wrong_.calls) tried.emplace(wrong.function, wrong.argument, wrong.kind);
-  const std::string header = read_file(std::string(SPLINECAST_SOURCE) + "/ipc/c/splinecast.h");
+  const std::string header =
+      read_file(std::string(SPLINECAST_SOURCE) + "/ipc/include/splinecast.h");
   int functions = 0, pointers = 0;
   for (const auto& [function, parameters] : prototypes(header)) {
     ++functions;

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ipc/c/splinecast.h"
+#include "splinecast.h"
 #include "tests/fixtures/processes/process.hpp"
 
 namespace splinecast::testing {

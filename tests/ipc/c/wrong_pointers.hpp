@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ipc/c/splinecast.h"
+#include "splinecast.h"
 
 namespace splinecast::testing {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <type_traits>
 
-#include "ipc/c/splinecast.h"
+#include "splinecast.h"
 
 namespace splinecast::testing {
 

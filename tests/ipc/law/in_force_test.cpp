@@ -43,9 +43,9 @@ class InForce : public TimeLaw {
     return reader_->rate().rate;
   }
   std::vector<std::string> faults() {
-    std::vector<std::string> told;
-    law_solver_->take_commander_faults(told);
-    return told;
+    std::vector<std::string> reported;
+    law_solver_->take_commander_faults(reported);
+    return reported;
   }
   std::vector<ipc::CommanderEntry> commanders() {
     ipc::LawBoard board(law_.name(), {});
@@ -230,10 +230,10 @@ TEST_F(InForce, ACommanderOfAnotherTimeNamespaceIsNotTaken) {
   pass(milliseconds(200));
   EXPECT_EQ(rate(), 1);
   EXPECT_EQ(commanders().size(), 1U);
-  const auto told = faults();
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_TRUE(told[0].starts_with("commander 'estop' is not heard: ")) << told[0];
-  EXPECT_NE(told[0].find("time namespace"), std::string::npos) << told[0];
+  const auto reported = faults();
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_TRUE(reported[0].starts_with("commander 'estop' is not heard: ")) << reported[0];
+  EXPECT_NE(reported[0].find("time namespace"), std::string::npos) << reported[0];
   pass(milliseconds(100));
   EXPECT_TRUE(faults().empty()) << "once";
 }
@@ -328,11 +328,11 @@ TEST(CommandersOfALaw, BeyondTheSixteenthAreReported) {
     clock.advance(milliseconds(1));
     (void)solver.step(clock);
   }
-  std::vector<std::string> told;
-  solver.take_commander_faults(told);
-  EXPECT_EQ(told, (std::vector<std::string>{
-                      "commander 'c' requests rate 1.5, which counts as the largest, 1",
-                      "commander 'q' is not heard: the law has 16 others"}));
+  std::vector<std::string> reported;
+  solver.take_commander_faults(reported);
+  EXPECT_EQ(reported, (std::vector<std::string>{
+                          "commander 'c' requests rate 1.5, which counts as the largest, 1",
+                          "commander 'q' is not heard: the law has 16 others"}));
 }
 
 }  // namespace

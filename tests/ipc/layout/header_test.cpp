@@ -11,9 +11,9 @@
 
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/check.hpp"
-#include "ipc/layout/separation.hpp"
 #include "ipc/layout/waypoint_items.hpp"
 #include "ipc/memory/names.hpp"
+#include "ipc/memory/separation.hpp"
 #include "ipc/options/stream.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"

@@ -13,8 +13,8 @@
 #include "ipc/layout/common_control.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/ring_control.hpp"
-#include "ipc/layout/separation.hpp"
 #include "ipc/layout/waypoint_items.hpp"
+#include "ipc/memory/separation.hpp"
 #include "ipc/options/stream.hpp"
 #include "splinecast/options.hpp"
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "ipc/layout/separation.hpp"
 #include "ipc/mapping/owner_lock.hpp"
+#include "ipc/memory/separation.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/streams.hpp"
 #include "tests/fixtures/processes/process.hpp"

@@ -68,7 +68,7 @@ TEST(AStopper, StopsTheCurveAtTheSettledTime) {
   EXPECT_EQ(holders_of(live.board.reader), (std::vector<std::string>{"anna"}));
   EXPECT_EQ(live.summary().newest_time, settled);
   EXPECT_EQ(live.velocity_at(settled), before);
-  EXPECT_EQ(live.sampler.preview(settled + live.window.stop_time, live.state.ref()),
+  EXPECT_EQ(live.sampler.preview(settled + live.window.stop_length, live.state.ref()),
             SampleStatus::holding);
   // The waypoints after the cut: those at 310 ms and later.
   EXPECT_EQ(live.summary().cut_off, 60U);
@@ -204,7 +204,7 @@ TEST(AStopper, EndsAStreamThatIsFinishedWhereItsStopRests) {
   live.put_all(50, 900);
   live.run_until(StoppedStream::kNow + milliseconds(300));
   live.hold();
-  const Time rest = live.summary().newest_time + live.window.stop_time;
+  const Time rest = live.summary().newest_time + live.window.stop_length;
   const double position = live.position_at(rest);
   ASSERT_EQ(live.ring.writer.finish({.kind = ConditionKind::halt, .value = {}}, live.solved()),
             AppendStatus::accepted);
@@ -225,7 +225,7 @@ TEST(AStopper, EndsASearchForTheEndOfAStream) {
   ASSERT_FALSE(live.summary().finished);  // an entry back to the last waypoint is being searched
   live.hold();
   EXPECT_TRUE(live.summary().finished);
-  const Time rest = live.clock.time + live.window.stop_time + milliseconds(10);
+  const Time rest = live.clock.time + live.window.stop_length + milliseconds(10);
   EXPECT_EQ(live.sampler.preview(rest, live.state.ref()), SampleStatus::holding);
   EXPECT_EQ(live.summary().end_lateness, Time::zero());
 }

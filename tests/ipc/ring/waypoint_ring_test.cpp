@@ -73,7 +73,7 @@ TEST(WaypointRing, AcceptsTheEarliestAndTheLatestTimeInOrder) {
   EXPECT_EQ(append(ring, -kLatestTime, {0}), AppendStatus::accepted);
   EXPECT_EQ(append(ring, kLatestTime + Time(1), {0}), AppendStatus::too_far_apart);
   EXPECT_EQ(append(ring, kLatestTime, {0}), AppendStatus::too_far_apart);
-  const IngestLimits any{.min_interval = Time(1), .max_interval = Time::max()};
+  const IntervalRange any{.least = Time(1), .most = Time::max()};
   testing::MemoryStream stream(1, {}, 8, 64, any);
   stream.ring.writer = WaypointRingWriter(stream.ring.bytes.span(), stream.ring.layout, any);
   const std::vector<double> x{0, 1};

@@ -15,9 +15,9 @@
 #include <string>
 #include <thread>
 
-#include "ipc/layout/separation.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
+#include "ipc/memory/separation.hpp"
 #include "ipc/roles/inspect.hpp"
 #include "ipc/roles/internals.hpp"
 #include "splinecast/errors.hpp"

@@ -121,17 +121,17 @@ TEST_F(ProducerRefusals, AllocateNothingWhenTheResultIsReused) {
 
 TEST_F(ProducerRefusals, AreReportedByTheSolverOncePerReason) {
   Producer producer(stream_.name(), options());
-  std::vector<ItemRefusal> told;
+  std::vector<ItemRefusal> reported;
   append(producer, 5);
   solve();
-  solver_.take_first_refusals(told);
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_EQ(told[0].item, 0U);
+  solver_.take_first_refusals(reported);
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_EQ(reported[0].item, 0U);
   append(producer, 5);
   ASSERT_EQ(producer.finish({}), AppendStatus::accepted);
   solve();
-  solver_.take_first_refusals(told);
-  EXPECT_TRUE(told.empty());
+  solver_.take_first_refusals(reported);
+  EXPECT_TRUE(reported.empty());
 }
 
 TEST_F(ProducerRefusals, AreAllReturnedByInspectIfTheBoardKeepsThem) {

@@ -122,30 +122,30 @@ TEST(ReplacementPreview, ReportsTheEntryThatTheSolverMakes) {
       SCOPED_TRACE(::testing::Message() << "limit " << limit << ", blend " << blend);
       Replaced live(limit);
       const Word revision = live.board.reader.revision();
-      const ReplacePreview told = live.preview(milliseconds(blend));
+      const ReplacePreview reported = live.preview(milliseconds(blend));
       EXPECT_EQ(live.board.reader.revision(), revision);
-      ASSERT_TRUE(told.is_known);
-      ASSERT_TRUE(told.enters);
+      ASSERT_TRUE(reported.is_known);
+      ASSERT_TRUE(reported.enters);
       const auto entry = live.replace(milliseconds(blend));
       ASSERT_TRUE(entry);
-      EXPECT_EQ(told.begin, entry->left);
-      EXPECT_EQ(told.duration, entry->right - entry->left);
-      EXPECT_EQ(told.passed_over, live.solver.summary().passed_over);
-      if (told.waypoint) {
-        EXPECT_EQ(live.times[*told.waypoint], entry->right);
+      EXPECT_EQ(reported.begin, entry->left);
+      EXPECT_EQ(reported.duration, entry->right - entry->left);
+      EXPECT_EQ(reported.passed_over, live.solver.summary().passed_over);
+      if (reported.waypoint) {
+        EXPECT_EQ(live.times[*reported.waypoint], entry->right);
       }
       double peak = 0;
       for (Time t = entry->left; t < entry->right; t += milliseconds(1)) {
         ASSERT_TRUE(has_values(live.sampler.preview(t, live.state.ref())));
         peak = std::max(peak, std::abs(live.state.acceleration()[0]));
       }
-      EXPECT_NEAR(told.entry.acceleration[0], peak, 0.02 * peak);
-      EXPECT_GE(told.motion.acceleration[0], told.entry.acceleration[0]);
-      EXPECT_GE(told.motion.velocity[0], told.entry.velocity[0]);
-      EXPECT_GT(told.entry.jerk[0], 0);
+      EXPECT_NEAR(reported.entry.acceleration[0], peak, 0.02 * peak);
+      EXPECT_GE(reported.motion.acceleration[0], reported.entry.acceleration[0]);
+      EXPECT_GE(reported.motion.velocity[0], reported.entry.velocity[0]);
+      EXPECT_GT(reported.entry.jerk[0], 0);
       if (limit > 0) {
-        EXPECT_LE(told.worst.ratio, 1 + 1e-9);
-        EXPECT_GT(told.worst.ratio, 0.05);
+        EXPECT_LE(reported.worst.ratio, 1 + 1e-9);
+        EXPECT_GT(reported.worst.ratio, 0.05);
       }
     }
   }
@@ -154,13 +154,13 @@ TEST(ReplacementPreview, ReportsTheEntryThatTheSolverMakes) {
 TEST(ReplacementPreview, OfAStopReportsItsDuration) {
   Replaced live(4);
   live.plan.clear();
-  const ReplacePreview told = live.preview({});
-  ASSERT_TRUE(told.is_known);
-  EXPECT_FALSE(told.enters);
+  const ReplacePreview reported = live.preview({});
+  ASSERT_TRUE(reported.is_known);
+  EXPECT_FALSE(reported.enters);
   EXPECT_EQ(live.ring.writer.replace_from(time_at(1100), {}, live.solved()),
             AppendStatus::accepted);
   live.drain();
-  EXPECT_EQ(live.solver.summary().stop, told.duration);
+  EXPECT_EQ(live.solver.summary().stop, reported.duration);
 }
 
 /// Positions at 100 Hz of a motion with two dimensions; the second one is periodic.
@@ -203,22 +203,22 @@ TEST(ReplacementPreview, OfAProducerChangesNothingAndMatchesTheReplacement) {
   const auto plan = waypoints_at(other, t + milliseconds(20));
   const Word appended = producer.appended();
   const Word passed_before = Internals::summary(solver).passed_over;  // > 0: starts in motion
-  const ReplacePreview told = producer.preview_replace(t, plan, {.blend = milliseconds(100)});
+  const ReplacePreview reported = producer.preview_replace(t, plan, {.blend = milliseconds(100)});
   EXPECT_EQ(producer.appended(), appended);
-  ASSERT_EQ(told.status, AppendStatus::accepted);
-  ASSERT_TRUE(told.is_known);
-  ASSERT_TRUE(told.enters);
-  EXPECT_GE(told.duration, milliseconds(100));
-  EXPECT_LE(told.entry.acceleration[0], 20);
-  EXPECT_LT(told.motion.velocity[1], 5);
+  ASSERT_EQ(reported.status, AppendStatus::accepted);
+  ASSERT_TRUE(reported.is_known);
+  ASSERT_TRUE(reported.enters);
+  EXPECT_GE(reported.duration, milliseconds(100));
+  EXPECT_LE(reported.entry.acceleration[0], 20);
+  EXPECT_LT(reported.motion.velocity[1], 5);
   EXPECT_EQ(producer.preview_replace(begin - std::chrono::hours(1), plan).status,
             AppendStatus::too_late);
   ASSERT_EQ(producer.replace_from(t, plan, {.blend = milliseconds(100)}), AppendStatus::accepted);
   for (int i = 0; i < 100; ++i) solver.step(clock);
-  EXPECT_EQ(Internals::summary(solver).passed_over - passed_before, told.passed_over);
+  EXPECT_EQ(Internals::summary(solver).passed_over - passed_before, reported.passed_over);
   Reader reader(stream.name());
   State state(2);
-  ASSERT_TRUE(has_values(reader.preview(t + told.duration / 2, state)));
+  ASSERT_TRUE(has_values(reader.preview(t + reported.duration / 2, state)));
   EXPECT_LT(reader.excess(state).ratio, 1);
   EXPECT_GT(reader.excess(state).ratio, 0);
   EXPECT_EQ(reader.limits().acceleration.size(), 2U);
@@ -227,10 +227,10 @@ TEST(ReplacementPreview, OfAProducerChangesNothingAndMatchesTheReplacement) {
 TEST(ReplacementPreview, IsUnknownForAStreamWithoutACurve) {
   LiveStream live;
   ReplacementPlanner planner(live.board.reader, live.window, live.kinds, live.live, Beyond::report);
-  ReplacePreview told;
-  told.begin = time_at(100);
-  planner.plan({}, {}, told);
-  EXPECT_FALSE(told.is_known);
+  ReplacePreview reported;
+  reported.begin = time_at(100);
+  planner.plan({}, {}, reported);
+  EXPECT_FALSE(reported.is_known);
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 
 #include "ipc/board/knot.hpp"
 #include "ipc/board/reader.hpp"
-#include "ipc/layout/separation.hpp"
 #include "ipc/layout/summary.hpp"
+#include "ipc/memory/separation.hpp"
 #include "ipc/sampling/sampler.hpp"
 #include "tests/fixtures/processes/trapped_page.hpp"
 #include "tests/fixtures/streams/board_words.hpp"

@@ -34,7 +34,7 @@ TEST(Sampler, ReturnsTheStatusOfEachTime) {
   const Mesh mesh = random_mesh(1, 20, 2, 2);
   Stream stream(2, {.settle = 4,
                     .start = {.kind = ConditionKind::halt, .value = {}},
-                    .stop_time = Time(1'000'000)});
+                    .stop_length = Time(1'000'000)});
   Sampler live(stream.board.reader, StreamClock::monotonic);
   Sampler recorded(stream.board.reader, StreamClock::recorded);
   State state(2);
@@ -107,7 +107,7 @@ TEST(Sampler, FindsTheSegmentWhenThePackedTimesAreWrong) {
     std::ranges::copy(truth, hints.begin());
     const Time t = mesh.times[random() % 99] + Time(1);
     ASSERT_EQ(honest.sample(t, wanted.ref()), SampleStatus::settled);
-    for (int lie = 0; lie < 40; ++lie) hints[random() % 128] = random();
+    for (int i = 0; i < 40; ++i) hints[random() % 128] = random();
     Sampler sampler(stream.board.reader, StreamClock::recorded);
     ASSERT_EQ(sampler.sample(t, state.ref()), SampleStatus::settled);
     ASSERT_EQ(state.position()[0], wanted.position()[0]);

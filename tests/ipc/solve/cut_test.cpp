@@ -147,7 +147,7 @@ std::vector<core::WindowOptions> windows_of_all_methods() {
     how.interpolant.method = &method;
     if (method.smooths()) how.interpolant.lambda = 1e-6;
     how.settle = core::default_settle(method);
-    how.force_lag = true;
+    how.accepts_short_lag = true;
     all.push_back(how);
   }
   return all;
@@ -218,7 +218,7 @@ TEST(Cut, AtAKnotKeepsTheSegmentThatEndsThere) {
 
 TEST(Cut, InAStopKeepsItsBitsAndItsLength) {
   for_each_method([](Live& live) {
-    const Time length = live.window.stop_time;
+    const Time length = live.window.stop_length;
     const auto before = segment_at(live, at(151));
     ASSERT_EQ(before.kind, SegmentKind::stop);
     cut(live, at(200));
@@ -233,7 +233,7 @@ TEST(Cut, InAStopKeepsItsBitsAndItsLength) {
 
 TEST(Cut, AtTheEndOfAStopKeepsIt) {
   for_each_method([](Live& live) {
-    const Time end = at(150) + live.window.stop_time;
+    const Time end = at(150) + live.window.stop_length;
     cut(live, end);
     EXPECT_EQ(segment_at(live, end - Time(1)).kind, SegmentKind::stop);
     EXPECT_TRUE(begins_beside_target(live, end));
@@ -243,7 +243,7 @@ TEST(Cut, AtTheEndOfAStopKeepsIt) {
 
 TEST(Cut, InAHoldKeepsTheStopBeforeIt) {
   for_each_method([](Live& live) {
-    const Time end = at(150) + live.window.stop_time;
+    const Time end = at(150) + live.window.stop_length;
     cut(live, end + milliseconds(100));
     EXPECT_EQ(segment_at(live, end).kind, SegmentKind::hold);
     EXPECT_EQ(count_forms(live, SegmentForm::hold), 1U);

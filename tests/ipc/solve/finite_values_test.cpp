@@ -23,7 +23,7 @@ namespace {
 using std::chrono::milliseconds;
 using testing::MemoryStream;
 
-constexpr IngestLimits kNanosecond{.min_interval = Time(1)};
+constexpr IntervalRange kNanosecond{.least = Time(1)};
 
 Word reason(const MemoryStream& stream, Refusal refusal) {
   return stream.solver.summary().reasons[static_cast<std::size_t>(refusal)];
@@ -83,7 +83,7 @@ TEST(FiniteValues, AQuaternionTooShortForItsVelocityIsRefused) {
 core::WindowOptions smoothing(double lambda) {
   return {.interpolant = {.method = find_method("smoothing"), .lambda = lambda},
           .settle = 10,
-          .force_lag = true};
+          .accepts_short_lag = true};
 }
 
 /// With λ/h³ = 1e33 next to intervals of 1,000 s, the equations of a smoothing spline exceed the
@@ -180,10 +180,10 @@ core::WindowOptions window_of(const Method& method, Extremes& extremes) {
     constexpr std::array kLambdas{0.0, 1e-30, 1.0, 1e6, 1e100};
     how.interpolant.lambda = kLambdas[extremes.pick(kLambdas.size())];
     how.settle = 10;
-    how.force_lag = true;
+    how.accepts_short_lag = true;
   }
   if (extremes.pick(2) == 0) how.limits.acceleration = {1e-100, 0, 10, 1e100, 1};
-  how.stop_time = extremes.pick(2) == 0 ? Time(1) : milliseconds(250);
+  how.stop_length = extremes.pick(2) == 0 ? Time(1) : milliseconds(250);
   return how;
 }
 

@@ -22,7 +22,7 @@ TEST(FirstWaypoint, MayBeAtTheSettledTimeOfTheStepThatTakesIt) {
       1, {.start = {.kind = ConditionKind::halt, .value = {}}, .held_before_start = true}, 16, 64,
       {}, {}, live);
   stream.clock.time = seconds(100);
-  const Time first = stream.clock.time + live.freeze_ahead;
+  const Time first = stream.clock.time + live.settle_ahead;
   for (int i = 0; i < 3; ++i) {
     const double x = i;
     ASSERT_EQ(stream.append(first + milliseconds(10) * i, std::span(&x, 1)),

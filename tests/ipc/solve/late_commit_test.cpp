@@ -40,7 +40,7 @@ Word late_commits(const Live& live) {
 }
 
 /// The words that a solver stores after a commit, when it has read the clock.
-std::span<Word> words_behind_commit(Live& live) {
+std::span<Word> words_after_commit(Live& live) {
   return words_at(live.board.bytes.span(), live.board.layout.control, kChecked + 1).subspan(kLate);
 }
 
@@ -50,14 +50,14 @@ struct LateCommit : Live {
     put_all(50, 100);
     clock.time = kNow + milliseconds(80);
     EXPECT_EQ(put(kNow + milliseconds(110)), AppendStatus::accepted);
-    before.assign(words_behind_commit(*this).begin(), words_behind_commit(*this).end());
+    before.assign(words_after_commit(*this).begin(), words_after_commit(*this).end());
     EXPECT_TRUE(solver.step(StoppedClock(clock.time, kBeforeCommit, kPause)).published);
     clock.time += kPause;
   }
   /// Simulates that the solver died after the commit and `stores` more stores. Starts a new solver.
-  void die_behind_commit(std::size_t stores) {
+  void die_after_commit(std::size_t stores) {
     std::ranges::copy(before.begin() + static_cast<std::ptrdiff_t>(stores), before.end(),
-                      words_behind_commit(*this).begin() + static_cast<std::ptrdiff_t>(stores));
+                      words_after_commit(*this).begin() + static_cast<std::ptrdiff_t>(stores));
     replace_solver();
   }
   std::vector<Word> before;
@@ -83,7 +83,7 @@ TEST(LateCommit, IsCountedAlsoIfTheNextRevisionMissesItsDeadline) {
 TEST(LateCommit, IsCountedOnceByTheNextSolverIfTheFirstDiesAfterIt) {
   for (const std::size_t stores : {0U, 1U, 2U}) {
     LateCommit live;
-    live.die_behind_commit(stores);
+    live.die_after_commit(stores);
     live.solver.step(live.clock);
     EXPECT_EQ(late_commits(live), 1U) << stores;
     live.clock.time += milliseconds(3);
@@ -98,7 +98,7 @@ TEST(LateCommit, IsCountedOnceByTheNextSolverIfTheFirstDiesAfterIt) {
 TEST(LateCommit, IsNotCountedForATimelyCommitWhoseSolverDiesAfterIt) {
   Live live;
   live.put_all(50, 100);
-  std::ranges::fill(words_behind_commit(live), 0);
+  std::ranges::fill(words_after_commit(live), 0);
   live.replace_solver();
   live.clock.time += milliseconds(30);  // the published curve begins at 50 ms
   live.solver.step(live.clock);

@@ -75,8 +75,7 @@ TEST(Entry, IgnoresWaypointsRefusedDuringItsSearch) {
   live.replace_producer();
   const double x = 0.3;
   const auto send_blindly = [&](int ms) {
-    WaypointRingWriter blind(live.ring.bytes.span(), live.ring.layout,
-                             {.min_interval = Time::min()});
+    WaypointRingWriter blind(live.ring.bytes.span(), live.ring.layout, {.least = Time::min()});
     return blind.append({.time = at(ms), .position = {&x, 1}}, {});
   };
   for (const int ms : {900, 890}) {

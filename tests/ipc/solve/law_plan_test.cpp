@@ -36,7 +36,7 @@ class Law : public ::testing::Test, public LawPlanner {
  protected:
   Law()
       : stream_(1, law_window(), 64, 64, {Time(1), kLatestTime / 2}, {},
-                LiveOptions{.min_entry = Time(1)}) {
+                LiveOptions{.least_entry = Time(1)}) {
     stream_.replace_producer();  // with the limits of a law
     stream_.solver.plan_with(*this);
     next_ = [this](Time /*settled*/) {

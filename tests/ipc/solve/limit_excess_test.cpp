@@ -96,10 +96,10 @@ TEST(LimitExcess, IsRefusedWithItsPlaceAndNoExcessIsPublished) {
     EXPECT_EQ(live.solver.summary().exceeding, 3U);
     EXPECT_LE(live.peak(), 4 * (1 + 1e-9));
     RefusalReader reader;
-    Refusals told;
-    reader.look(live.board.reader, live.ring.reader, told);
-    ASSERT_EQ(told.items.size(), 3U);
-    for (const ItemRefusal& refusal : told.items) {
+    Refusals reported;
+    reader.look(live.board.reader, live.ring.reader, reported);
+    ASSERT_EQ(reported.items.size(), 3U);
+    for (const ItemRefusal& refusal : reported.items) {
       ASSERT_TRUE(refusal.excess);
       EXPECT_TRUE(refusal.excess->is_refused);
       EXPECT_EQ(refusal.excess->item, refusal.item);
@@ -109,7 +109,7 @@ TEST(LimitExcess, IsRefusedWithItsPlaceAndNoExcessIsPublished) {
         EXPECT_NE(text.find(part), std::string::npos) << text;
       }
     }
-    EXPECT_EQ(told.items[0].item, 65U);
+    EXPECT_EQ(reported.items[0].item, 65U);
   }
 }
 

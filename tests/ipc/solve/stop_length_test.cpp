@@ -49,7 +49,7 @@ TEST(StopLength, IsTheStopTimeWithoutALimitOfAcceleration) {
   how.limits.acceleration.clear();
   Watched live(how);
   EXPECT_GT(revisions_outside(live), 10);
-  EXPECT_EQ(live.solver.summary().stop, how.stop_time);
+  EXPECT_EQ(live.solver.summary().stop, how.stop_length);
   live.run_to(6000);
   EXPECT_EQ(live.verified(), "");
 }
@@ -71,7 +71,7 @@ TEST(StopLength, ShortenedByABoundIsADecisionThatVerificationChecks) {
   const auto segments = live.collected.segments();
   const auto stop = std::ranges::find(segments, SegmentKind::stop, &SegmentCopy::kind);
   ASSERT_NE(stop, segments.end());
-  EXPECT_LT(stop->right - stop->left, live.window.stop_time);
+  EXPECT_LT(stop->right - stop->left, live.window.stop_length);
   EXPECT_LE(live.position_at(at(60'000)), 1 + 1e-12);
   live.window.limits.upper = {2};
   EXPECT_NE(live.verified().find("too short"), std::string::npos) << live.verified();

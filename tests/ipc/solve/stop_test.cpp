@@ -29,7 +29,7 @@ void expect_immediate_stop(Live& live) {
   EXPECT_EQ(summary.changed_from, live.clock.time + milliseconds(5));
   EXPECT_EQ(summary.newest_time, live.clock.time + milliseconds(5));
   expect_balance(summary);
-  const Time rest = summary.newest_time + live.window.stop_time;
+  const Time rest = summary.newest_time + live.window.stop_length;
   EXPECT_EQ(live.sampler.preview(rest, live.state.ref()), SampleStatus::holding);
 }
 
@@ -102,7 +102,7 @@ TEST(Stop, AtTheLatestTimeLeavesAReadableBoardAfterAFinish) {
 TEST(Stop, ThatIsCutAtTheLatestTimeLeavesAReadableBoard) {
   Live live;
   live.put_all(50, 100);
-  const Time t = kLatestTime - live.window.stop_time / 2;
+  const Time t = kLatestTime - live.window.stop_length / 2;
   ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
   live.drain();
   ASSERT_EQ(live.replace(kLatestTime, {}), AppendStatus::accepted);  // in the stop segment
@@ -167,7 +167,7 @@ TEST(Stop, BeforeAStreamThatStartsInMotionTakesEffectAtItsStart) {
   live.solver.step(live.clock);
   EXPECT_EQ(live.solver.summary().controls, 2U);
   EXPECT_EQ(live.solver.summary().newest_time, t);
-  EXPECT_EQ(live.sampler.preview(t + live.window.stop_time, live.state.ref()),
+  EXPECT_EQ(live.sampler.preview(t + live.window.stop_length, live.state.ref()),
             SampleStatus::holding);
 }
 
@@ -193,7 +193,7 @@ TEST(Stop, TakesEffectAtTheNextSettledTimeForAnyQueuedItems) {
                      .pauses = 2});
     for (int stops = 0; stops < 5; ++stops) {
       world.run(milliseconds(300));
-      world.stop_behind_misses();
+      world.stop_after_misses();
     }
     EXPECT_EQ(world.stops, 5U) << "seed " << seed;
     const Summary& summary = world.summary();

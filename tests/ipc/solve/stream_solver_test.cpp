@@ -72,7 +72,7 @@ TEST(StreamSolver, ASolverThatTakesOverContinuesBitForBitAfterADeathAtAnyKnot) {
 }
 
 TEST(StreamSolver, RefusesInvalidIntervalsWithReasonAndItemNumber) {
-  MemoryStream stream(1, {}, 64, 64, {.min_interval = Time(5000), .max_interval = Time(1'000'000)});
+  MemoryStream stream(1, {}, 64, 64, {.least = Time(5000), .most = Time(1'000'000)});
   const auto put = [&](std::int64_t t, double x) {
     const std::vector<double> position{x};
     ASSERT_EQ(stream.append(Time(t), position), AppendStatus::accepted);

@@ -45,8 +45,8 @@ bool sweep_until(StreamSweep& sweep, const Condition& holds) {
   return holds();
 }
 
-bool await_news(RecordingSweep& told, SweepNews news, const std::string& stream) {
-  return sweep_until(told.sweep, [&] { return told.count(news, stream) > 0; });
+bool await_news(RecordingSweep& reported, SweepNews news, const std::string& stream) {
+  return sweep_until(reported.sweep, [&] { return reported.count(news, stream) > 0; });
 }
 
 /// A file in the shared-memory folder; the destructor removes it.
@@ -89,14 +89,14 @@ TEST(StreamSweepErrors, FilesWithInvalidStreamNamesDoNotEndASweep) {
   const ForeignFile with_escape(begin + "\033[2J\n.waypoints");
   const ForeignFile with_dot("splinecast.." + family.name() + ".spline");
   const ForeignFile too_long(begin + std::string(140, 'x') + ".waypoints.lock");
-  RecordingSweep told({family.name() + "*", awaited.name()});
-  EXPECT_FALSE(await_news(told, SweepNews::given_up, family.name() + " bad"));
+  RecordingSweep reported({family.name() + "*", awaited.name()});
+  EXPECT_FALSE(await_news(reported, SweepNews::given_up, family.name() + " bad"));
   Producer of_pattern = make_producer(stream);
   Producer named = make_producer(awaited.name());
-  EXPECT_TRUE(await_news(told, SweepNews::solving, stream));
-  EXPECT_TRUE(await_news(told, SweepNews::solving, awaited.name()));
+  EXPECT_TRUE(await_news(reported, SweepNews::solving, stream));
+  EXPECT_TRUE(await_news(reported, SweepNews::solving, awaited.name()));
   of_pattern.withdraw();
-  EXPECT_TRUE(await_news(told, SweepNews::gone, stream));
+  EXPECT_TRUE(await_news(reported, SweepNews::gone, stream));
   unlink_region(stream, RegionKind::spline);
   OwnerLock(stream, RegionKind::spline).remove_file();
 }
@@ -106,18 +106,18 @@ TEST(StreamSweepErrors, AFailedStepGivesUpItsStreamAndTheOthersContinue) {
   const TestStream good;
   Producer of_bad = make_producer(bad.name());
   Producer of_good = make_producer(good.name());
-  RecordingSweep told({bad.name(), good.name()});
+  RecordingSweep reported({bad.name(), good.name()});
   for (int i = 0; i < 12; ++i) append_at(of_bad, Time(10'000'000) * i);
-  ASSERT_TRUE(sweep_until(told.sweep, [&] { return of_bad.wait_until_consumed(Time(0)); }));
+  ASSERT_TRUE(sweep_until(reported.sweep, [&] { return of_bad.wait_until_consumed(Time(0)); }));
   damage(bad.name());
   ASSERT_EQ(of_bad.replace_from(Time(110'000'000), {}), AppendStatus::accepted);
-  ASSERT_TRUE(await_news(told, SweepNews::given_up, bad.name()));
-  EXPECT_NE(told.why.find("holds data that its solver did not write"), std::string::npos)
-      << told.why;
+  ASSERT_TRUE(await_news(reported, SweepNews::given_up, bad.name()));
+  EXPECT_NE(reported.why.find("holds data that its solver did not write"), std::string::npos)
+      << reported.why;
   EXPECT_FALSE(is_owned(bad.name(), RegionKind::spline));
   append_at(of_good, Time(0));
-  EXPECT_TRUE(sweep_until(told.sweep, [&] { return of_good.wait_until_consumed(Time(0)); }));
-  EXPECT_EQ(told.count(SweepNews::given_up, bad.name()), 1);
+  EXPECT_TRUE(sweep_until(reported.sweep, [&] { return of_good.wait_until_consumed(Time(0)); }));
+  EXPECT_EQ(reported.count(SweepNews::given_up, bad.name()), 1);
 }
 
 TEST(StreamSweepErrors, AnExceptionFromTheNewsCallbackLosesNoStream) {
@@ -147,24 +147,25 @@ TEST(StreamSweepErrors, AGivenUpNamedStreamIsRetriedWhenItIsRecreated) {
     Solver solver(bad.name(), {.settle = 3, .capacity = 64});
     ASSERT_TRUE(solver.attach());
   }
-  RecordingSweep told({bad.name(), other.name()}, {.settle = 4, .capacity = 64});
-  ASSERT_TRUE(await_news(told, SweepNews::given_up, bad.name()));
+  RecordingSweep reported({bad.name(), other.name()}, {.settle = 4, .capacity = 64});
+  ASSERT_TRUE(await_news(reported, SweepNews::given_up, bad.name()));
   before.withdraw();
   unlink_region(bad.name(), RegionKind::spline);
   // The sweep does not scan in between, so it does not see that the name was free.
   Producer after = make_producer(bad.name());
   append_at(after, Time(0));
-  EXPECT_TRUE(await_news(told, SweepNews::solving, bad.name()));
-  EXPECT_EQ(told.count(SweepNews::given_up, bad.name()), 1);
+  EXPECT_TRUE(await_news(reported, SweepNews::solving, bad.name()));
+  EXPECT_EQ(reported.count(SweepNews::given_up, bad.name()), 1);
 }
 
 /// Sweeps with too few descriptors for two streams, and then with enough.
-void expect_postponed(RecordingSweep& told, rlim_t free, const std::vector<std::string>& streams) {
+void expect_postponed(RecordingSweep& reported, rlim_t free,
+                      const std::vector<std::string>& streams) {
   const auto count = [&](SweepNews news) {
-    return told.count(news, streams[0]) + told.count(news, streams[1]);
+    return reported.count(news, streams[0]) + reported.count(news, streams[1]);
   };
   const auto await_count = [&](SweepNews news, std::ptrdiff_t count_of_both) {
-    return sweep_until(told.sweep, [&] { return count(news) == count_of_both; });
+    return sweep_until(reported.sweep, [&] { return count(news) == count_of_both; });
   };
   {
     const FewDescriptors few(free);
@@ -180,20 +181,21 @@ void expect_postponed(RecordingSweep& told, rlim_t free, const std::vector<std::
 TEST(StreamSweepErrors, ANamedStreamIsRetriedAfterDescriptorsRanOut) {
   const TestStream first;
   const TestStream second;
-  RecordingSweep told({first.name(), second.name()});
+  RecordingSweep reported({first.name(), second.name()});
   Producer of_first = make_producer(first.name());
   Producer of_second = make_producer(second.name());
-  expect_postponed(told, 1, {first.name(), second.name()});  // the sweep already holds their locks
+  expect_postponed(reported, 1,
+                   {first.name(), second.name()});  // the sweep already holds their locks
 }
 
 TEST(StreamSweepErrors, AStreamOfAPatternIsRetriedAfterDescriptorsRanOut) {
   const TestStream first;
   const TestStream second;
-  RecordingSweep told({"[" + first.name().substr(0, 1) + "]" + first.name().substr(1),
-                       "[" + second.name().substr(0, 1) + "]" + second.name().substr(1)});
+  RecordingSweep reported({"[" + first.name().substr(0, 1) + "]" + first.name().substr(1),
+                           "[" + second.name().substr(0, 1) + "]" + second.name().substr(1)});
   Producer of_first = make_producer(first.name());
   Producer of_second = make_producer(second.name());
-  expect_postponed(told, 2, {first.name(), second.name()});
+  expect_postponed(reported, 2, {first.name(), second.name()});
 }
 
 }  // namespace

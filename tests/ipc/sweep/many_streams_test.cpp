@@ -41,42 +41,42 @@ TEST(StreamSweep, APatternFindsNewStreamsAndForgetsRemovedOnes) {
   const TestStream family;
   const std::string stream = family.name() + ".x";
   const TestStream other;
-  RecordingSweep told({family.name() + ".*"});
-  told.sweep.sweep(told.clock);
-  EXPECT_TRUE(told.news.empty());
+  RecordingSweep reported({family.name() + ".*"});
+  reported.sweep.sweep(reported.clock);
+  EXPECT_TRUE(reported.news.empty());
   Producer unwanted = make_producer(other.name());
   {
     Producer producer = make_producer(stream);
     append_at(producer, Time(0));
-    EXPECT_TRUE(told.await_news(SweepNews::solving, stream));
+    EXPECT_TRUE(reported.await_news(SweepNews::solving, stream));
     EXPECT_TRUE(await([&] {
-      told.sweep.sweep(told.clock);
+      reported.sweep.sweep(reported.clock);
       return producer.wait_until_consumed(Time(0));
     }));
-    EXPECT_EQ(told.sweep.solved(), 1U);
+    EXPECT_EQ(reported.sweep.solved(), 1U);
     producer.withdraw();
   }
-  EXPECT_TRUE(told.await_news(SweepNews::gone, stream));
-  EXPECT_EQ(told.sweep.solved(), 0U);
+  EXPECT_TRUE(reported.await_news(SweepNews::gone, stream));
+  EXPECT_EQ(reported.sweep.solved(), 0U);
   EXPECT_FALSE(is_owned(stream, RegionKind::spline));
-  EXPECT_EQ(told.count(SweepNews::solving, other.name()), 0);
+  EXPECT_EQ(reported.count(SweepNews::solving, other.name()), 0);
   Producer again = make_producer(stream);
-  told.news.clear();
-  EXPECT_TRUE(told.await_news(SweepNews::solving, stream));
+  reported.news.clear();
+  EXPECT_TRUE(reported.await_news(SweepNews::solving, stream));
   again.withdraw();
-  EXPECT_TRUE(told.await_news(SweepNews::gone, stream));
+  EXPECT_TRUE(reported.await_news(SweepNews::gone, stream));
   unlink_region(stream, RegionKind::spline);
   OwnerLock(stream, RegionKind::spline).remove_file();
 }
 
 TEST(StreamSweep, ANamedStreamIsOwnedBeforeItsProducerStarts) {
   const TestStream stream;
-  RecordingSweep told({stream.name()});
-  EXPECT_EQ(told.count(SweepNews::waiting, stream.name()), 1);
+  RecordingSweep reported({stream.name()});
+  EXPECT_EQ(reported.count(SweepNews::waiting, stream.name()), 1);
   EXPECT_TRUE(is_owned(stream.name(), RegionKind::spline));
   EXPECT_THROW(Solver(stream.name(), {}), StreamBusy);
   Producer producer = make_producer(stream.name());
-  EXPECT_TRUE(told.await_news(SweepNews::solving, stream.name()));
+  EXPECT_TRUE(reported.await_news(SweepNews::solving, stream.name()));
   EXPECT_TRUE(producer.wait_for_solver(Time(1)));
 }
 
@@ -88,31 +88,31 @@ TEST(StreamSweep, AStreamOfAnotherSolverIsTakenOverOnlyWhenThatSolverDies) {
   const MonotonicClock clock;
   append_at(producer, Time(0));
   EXPECT_EQ(other->step(clock).consumed, 1U);
-  RecordingSweep told({stream.name()});
-  for (int i = 0; i < 3; ++i) told.sweep.sweep(clock);
-  EXPECT_EQ(told.news, (News{{SweepNews::elsewhere, stream.name()}}));
+  RecordingSweep reported({stream.name()});
+  for (int i = 0; i < 3; ++i) reported.sweep.sweep(clock);
+  EXPECT_EQ(reported.news, (News{{SweepNews::elsewhere, stream.name()}}));
   other.reset();
-  EXPECT_TRUE(told.await_news(SweepNews::solving, stream.name()));
+  EXPECT_TRUE(reported.await_news(SweepNews::solving, stream.name()));
   append_at(producer, Time(10'000'000));
   EXPECT_TRUE(await([&] {
-    told.sweep.sweep(clock);
+    reported.sweep.sweep(clock);
     return producer.consumed() == 2;
   }));
-  EXPECT_EQ(told.count(SweepNews::elsewhere, stream.name()), 1);
+  EXPECT_EQ(reported.count(SweepNews::elsewhere, stream.name()), 1);
 }
 
 TEST(StreamSweep, AnIdleStreamCostsNoStep) {
   const TestStream stream;
   Producer producer = make_producer(stream.name());
-  RecordingSweep told({stream.name()});
-  ASSERT_TRUE(told.await_news(SweepNews::solving, stream.name()));
+  RecordingSweep reported({stream.name()});
+  ASSERT_TRUE(reported.await_news(SweepNews::solving, stream.name()));
   SetClock clock;
-  told.sweep.sweep(clock);
+  reported.sweep.sweep(clock);
   clock.reads = 0;
-  for (int i = 0; i < 10; ++i) EXPECT_FALSE(told.sweep.sweep(clock));
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(reported.sweep.sweep(clock));
   EXPECT_EQ(clock.reads, 10);  // one per sweep; a step that publishes adds two more
   append_at(producer, Time(0));
-  EXPECT_FALSE(told.sweep.sweep(clock));
+  EXPECT_FALSE(reported.sweep.sweep(clock));
   EXPECT_EQ(clock.reads, 13);
   EXPECT_EQ(producer.consumed(), 1U);
 }
@@ -122,31 +122,31 @@ TEST(StreamSweep, AnIdleStreamIsPolledOnlyInSomeSweeps) {
   const TestStream busy;
   Producer first = make_producer(quiet.name());
   Producer second = make_producer(busy.name());
-  RecordingSweep told({quiet.name(), busy.name()});
-  ASSERT_TRUE(told.await_news(SweepNews::solving, quiet.name()));
-  ASSERT_TRUE(told.await_news(SweepNews::solving, busy.name()));
+  RecordingSweep reported({quiet.name(), busy.name()});
+  ASSERT_TRUE(reported.await_news(SweepNews::solving, quiet.name()));
+  ASSERT_TRUE(reported.await_news(SweepNews::solving, busy.name()));
   SetClock clock;
   int sent = 0;
   const auto sweeps_to_take = [&](Producer& producer) {
     append_at(producer, std::chrono::milliseconds(++sent));
     int sweeps = 0;
     while (!producer.wait_until_consumed(Time(0))) {
-      told.sweep.sweep(clock);
+      reported.sweep.sweep(clock);
       ++sweeps;
     }
     return sweeps;
   };
   EXPECT_EQ(sweeps_to_take(first), 1);
   constexpr Time kPause = std::chrono::milliseconds(1);
-  EXPECT_EQ(told.sweep.next_pause(), kPause);
+  EXPECT_EQ(reported.sweep.next_pause(), kPause);
 
   int most_sweeps = 0;
   for (int round = 0; round < 2; ++round) {
     clock.time += PollSchedule::kIdleAfter;
-    told.sweep.sweep(clock);
-    EXPECT_EQ(told.sweep.next_pause(), PollSchedule::kIdlePause);
+    reported.sweep.sweep(clock);
+    EXPECT_EQ(reported.sweep.next_pause(), PollSchedule::kIdlePause);
     EXPECT_EQ(sweeps_to_take(second), 1);  // after the long pause the sweep polls all streams
-    EXPECT_EQ(told.sweep.next_pause(), kPause);
+    EXPECT_EQ(reported.sweep.next_pause(), kPause);
     EXPECT_EQ(sweeps_to_take(second), 1);
     // An idle stream is polled only in some sweeps. Once it has a waypoint, it is busy and is
     // polled in every sweep.
@@ -183,19 +183,19 @@ TEST(StreamSweep, ALiveStreamSettlesWithoutWaypointsUntilItRests) {
   const TestStream stream;
   SetClock clock;
   Producer producer = make_producer(stream.name(), StreamClock::monotonic);
-  RecordingSweep told({stream.name()});
-  ASSERT_TRUE(told.await_news(SweepNews::solving, stream.name()));
+  RecordingSweep reported({stream.name()});
+  ASSERT_TRUE(reported.await_news(SweepNews::solving, stream.name()));
   ASSERT_TRUE(producer.wait_for_solver(Time(1)));
   append_at(producer, clock.time + std::chrono::milliseconds(50));
   append_at(producer, clock.time + std::chrono::milliseconds(60));
-  told.sweep.sweep(clock);
+  reported.sweep.sweep(clock);
   const Reader reader(stream.name());
   const auto settled_until = [&] { return reader.progress().value().settled_until; };
   Time settled = settled_until();
   const Time end = clock.time + std::chrono::seconds(1);
   int revisions = 0;
   for (; clock.time < end; clock.time += std::chrono::milliseconds(1)) {
-    told.sweep.sweep(clock);
+    reported.sweep.sweep(clock);
     if (settled_until() == settled) continue;
     EXPECT_LE(settled_until() - settled, std::chrono::milliseconds(3));
     settled = settled_until();
@@ -212,30 +212,30 @@ TEST(StreamSweep, AStreamWithMoreThanOneBatchIsSweptAgainWithoutAPause) {
   Producer producer(stream.name(),
                     {.dimensions = 1, .clock = StreamClock::recorded, .capacity = 512});
   for (int i = 0; i < 300; ++i) append_at(producer, Time(1'000'000) * i);
-  RecordingSweep told({stream.name()});
-  ASSERT_TRUE(told.await_news(SweepNews::solving, stream.name()));
-  while (told.sweep.sweep(told.clock)) {
+  RecordingSweep reported({stream.name()});
+  ASSERT_TRUE(reported.await_news(SweepNews::solving, stream.name()));
+  while (reported.sweep.sweep(reported.clock)) {
   }
   EXPECT_TRUE(producer.wait_until_consumed(Time(0)));
 }
 
 TEST(StreamSweep, AFinishIsReportedOnceAndANewStreamOfThatNameIsSolved) {
   const TestStream stream;
-  RecordingSweep told({stream.name()});
+  RecordingSweep reported({stream.name()});
   {
     Producer producer = make_producer(stream.name());
     append_at(producer, Time(0));
     ASSERT_EQ(producer.finish({}), AppendStatus::accepted);
-    EXPECT_TRUE(told.await_news(SweepNews::finished, stream.name()));
+    EXPECT_TRUE(reported.await_news(SweepNews::finished, stream.name()));
   }
   Producer again = make_producer(stream.name());
   append_at(again, Time(0));
   EXPECT_TRUE(await([&] {
-    told.sweep.sweep(told.clock);
+    reported.sweep.sweep(reported.clock);
     return again.wait_until_consumed(Time(0));
   }));
-  EXPECT_EQ(told.count(SweepNews::solving, stream.name()), 2);
-  EXPECT_EQ(told.count(SweepNews::finished, stream.name()), 1);
+  EXPECT_EQ(reported.count(SweepNews::solving, stream.name()), 2);
+  EXPECT_EQ(reported.count(SweepNews::finished, stream.name()), 1);
 }
 
 TEST(StreamSweep, AnUnsolvableStreamIsGivenUpOnceAndTheOthersContinue) {
@@ -247,14 +247,14 @@ TEST(StreamSweep, AnUnsolvableStreamIsGivenUpOnceAndTheOthersContinue) {
     Solver before(bad.name(), {.settle = 3, .capacity = 64});
     ASSERT_TRUE(before.attach());
   }
-  RecordingSweep told({bad.name(), good.name()}, {.settle = 4, .capacity = 64});
-  EXPECT_TRUE(told.await_news(SweepNews::given_up, bad.name()));
-  EXPECT_NE(told.why.find("settle lag 3, not 4"), std::string::npos) << told.why;
-  EXPECT_TRUE(told.await_news(SweepNews::solving, good.name()));
+  RecordingSweep reported({bad.name(), good.name()}, {.settle = 4, .capacity = 64});
+  EXPECT_TRUE(reported.await_news(SweepNews::given_up, bad.name()));
+  EXPECT_NE(reported.why.find("settle lag 3, not 4"), std::string::npos) << reported.why;
+  EXPECT_TRUE(reported.await_news(SweepNews::solving, good.name()));
   Producer passing = make_producer(good.name() + ".passing");  // changes the folder
-  told.sweep.sweep(told.clock);
+  reported.sweep.sweep(reported.clock);
   passing.withdraw();
-  EXPECT_EQ(told.count(SweepNews::given_up, bad.name()), 1);
+  EXPECT_EQ(reported.count(SweepNews::given_up, bad.name()), 1);
   EXPECT_FALSE(is_owned(bad.name(), RegionKind::spline));
 }
 
@@ -277,12 +277,12 @@ TEST(StreamSweep, StreamsBeyondTheDescriptorLimitWaitUntilOthersEnd) {
                      .rlim_max = before.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &tight), 0);
   {
-    RecordingSweep told({family.name() + ".*"});
-    EXPECT_TRUE(told.await_news(SweepNews::no_descriptors, names[2]));
-    EXPECT_EQ(told.sweep.solved(), 2U);
+    RecordingSweep reported({family.name() + ".*"});
+    EXPECT_TRUE(reported.await_news(SweepNews::no_descriptors, names[2]));
+    EXPECT_EQ(reported.sweep.solved(), 2U);
     producers[0].withdraw();
-    EXPECT_TRUE(told.await_news(SweepNews::solving, names[2]));
-    EXPECT_EQ(told.count(SweepNews::no_descriptors, names[2]), 1);
+    EXPECT_TRUE(reported.await_news(SweepNews::solving, names[2]));
+    EXPECT_EQ(reported.count(SweepNews::no_descriptors, names[2]), 1);
   }
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
   for (std::size_t i = 0; i < names.size(); ++i) {

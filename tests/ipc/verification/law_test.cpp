@@ -44,7 +44,7 @@ class RecordedLaw : public ::testing::Test, public LawPlanner {
  protected:
   RecordedLaw()
       : stream_(1, law_window(), 64, 64, {Time(1), kLatestTime / 2}, {},
-                LiveOptions{.min_entry = Time(1)}),
+                LiveOptions{.least_entry = Time(1)}),
         settled_(stream_.board.reader) {
     stream_.replace_producer();
     stream_.solver.plan_with(*this);

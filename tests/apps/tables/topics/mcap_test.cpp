@@ -120,12 +120,12 @@ TEST_F(McapTopics, AGapAndABadRowAreNamedByTheirMessages) {
   const std::vector<std::string> replay{
       "replay", path(),     "--stream", stream.name(), "--clock",    "recorded",   "--rate",
       "max",    "--settle", "1",        "--json",      "--embedded", "--on-error", "skip"};
-  const testing::Ended told = testing::run(replay);
-  ASSERT_EQ(told.code, 0) << told.err;
-  EXPECT_NE(told.err.find(path() + ": message 6 of /joint_states: waypoint refused: duplicate"),
+  const testing::Ended reported = testing::run(replay);
+  ASSERT_EQ(reported.code, 0) << reported.err;
+  EXPECT_NE(reported.err.find(path() + ": message 6 of /joint_states: waypoint refused: duplicate"),
             std::string::npos)
-      << told.err;
-  const auto report = nlohmann::json::parse(told.out);
+      << reported.err;
+  const auto report = nlohmann::json::parse(reported.out);
   EXPECT_EQ(report["gaps"]["longest"][0]["after"], 3);
   ASSERT_EQ(report["rows"].size(), 1U);
   EXPECT_EQ(report["rows"][0]["message"], 6);
@@ -269,9 +269,9 @@ TEST_F(McapTopics, AFileThatIsCutOffGivesTheRowsOfItsWholeChunks) {
   EXPECT_LT(read.rows.size(), 20U);
   EXPECT_GT(read.rows.size(), 10U);
   EXPECT_TRUE(read.errors.empty());
-  const testing::Ended told = testing::run({"fit", path(), "--dt", "1"});
-  EXPECT_EQ(told.code, 0);
-  EXPECT_NE(told.err.find("the file is cut off: read up to its last whole chunk"),
+  const testing::Ended reported = testing::run({"fit", path(), "--dt", "1"});
+  EXPECT_EQ(reported.code, 0);
+  EXPECT_NE(reported.err.find("the file is cut off: read up to its last whole chunk"),
             std::string::npos);
 }
 

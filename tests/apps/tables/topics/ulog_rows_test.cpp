@@ -95,9 +95,10 @@ TEST_F(UlogTopics, WithABadSampleContinueAfterIt) {
 
 TEST_F(UlogTopics, ThatAreCutOffAreReportedOnStandardError) {
   write(small_log().raw("\x09"));
-  const testing::Ended told = testing::run({"fit", path(), "--topic", "motion", "--dt", "0.001"});
-  EXPECT_EQ(told.code, 0) << told.err;
-  EXPECT_NE(told.err.find(path() + ": the file is cut off"), std::string::npos) << told.err;
+  const testing::Ended reported =
+      testing::run({"fit", path(), "--topic", "motion", "--dt", "0.001"});
+  EXPECT_EQ(reported.code, 0) << reported.err;
+  EXPECT_NE(reported.err.find(path() + ": the file is cut off"), std::string::npos) << reported.err;
 }
 
 TEST_F(UlogTopics, OfARealFlightHaveTheValuesOfItsCsvFiles) {

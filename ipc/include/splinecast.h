@@ -447,18 +447,19 @@ typedef struct splinecast_producer_options {
   size_t kind_count;
   splinecast_condition
       start;               ///< one that can be met online: up to SPLINECAST_ACCELERATION, or OWN
-  int64_t min_interval;    ///< between two waypoints: 1 ns or more
-  int64_t max_interval;    ///< min_interval or more, below 2⁶¹ ns
-  size_t capacity;         ///< ring items, 2 to 2²⁴; rounded up to a power of two
+  int64_t min_interval;    ///< between two waypoints: 1 ns or more; default 1 µs
+  int64_t max_interval;    ///< min_interval or more, below 2⁶¹ ns; default 1 h
+  size_t capacity;         ///< ring items, 2 to 2²⁴; default 1,024; rounded up to a power of two
   int clock;               ///< splinecast_clock
   uint32_t mode;           ///< permission bits of the regions, up to 0777
   int64_t group;           ///< group of the regions; −1: this process's
   int64_t owner;           ///< also trust regions of this user; −1: own user and root only
   const char* law;         ///< time law that the stream follows, with SPLINECAST_CLOCK_LAW; or NULL
   int64_t horizon;         ///< live, without a law: how far ahead of now a time may be; above 0;
-                           ///< INT64_MAX: no time is compared with now
+                           ///< default 1 h; INT64_MAX: no time is compared with now
   double start_tolerance;  ///< live: distance of the first waypoint from the old end, in dimensions
-                           ///< without limits: 0 or more, in the dimension's unit or rad
+                           ///< without limits, in the dimension's unit or rad: 0 or more;
+                           ///< default 0.001
 } splinecast_producer_options;
 /// One dimension, a live stream from a full stop, intervals of 1 µs to 1 h, 1,024 items, a horizon
 /// of 1 h, a start tolerance of 0.001.
@@ -653,7 +654,8 @@ typedef struct splinecast_solver_options {
   const char* method;  ///< its name; default "c2"
   double lambda;       ///< of smoothing, which needs it: 0 to 1e100 s³
   double time_scale;   ///< of rounded: above 0, at most 1e100 s; default 1 s
-  int64_t settle;      ///< settle lag K, 0 to 64; default 8 for c2, else by the method
+  int64_t settle;      ///< settle lag K, 0 to 64; default 8 for c2, 64 for smoothing, else the
+                       ///< look-ahead of the method
   int64_t stop_time;   ///< length of the stop segment: above 0, at most 2⁶⁰ ns; default 250 ms
   int64_t freeze_ahead;  ///< live: settles this long ahead of now: 1 ns to 1 min; default 5 ms
   int64_t history;       ///< live: kept after its end: 0 to 24 h; default 1 s
