@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 namespace splinecast::apps {
 namespace {
 
@@ -28,6 +30,12 @@ ordered_json commander_json(const ipc::CommanderState& commander) {
   return json;
 }
 
+/// A rate or its slope without the rounding error of the curve that gives it: 0 below 1e-9.
+double shown(double value) {
+  constexpr double kRounding = 1e-9;
+  return std::abs(value) < kRounding ? 0 : value;
+}
+
 std::string name_of(const ipc::RampEffect& effect, std::size_t d) {
   return effect.names[d].empty() ? std::to_string(d) : effect.names[d];
 }
@@ -37,8 +45,9 @@ std::string name_of(const ipc::RampEffect& effect, std::size_t d) {
 std::string in_words(const LawReport& state) {
   std::string text;
   if (state.is_solved) {
-    text = fmt::format("'{}': rate {:g}, slope {:g} /s, {:g} at most; lag {:.3f} s\n", state.law,
-                       state.rate, state.slope, state.max_rate, to_seconds(state.lag));
+    text =
+        fmt::format("'{}': rate {:g}, slope {:g} /s, {:g} at most; lag {:.3f} s\n", state.law,
+                    shown(state.rate), shown(state.slope), state.max_rate, to_seconds(state.lag));
   } else {
     text = fmt::format("'{}': waiting for a solver\n", state.law);
   }
@@ -54,8 +63,8 @@ std::string in_words(const LawReport& state) {
 ordered_json to_json(const LawReport& state) {
   ordered_json json{{"law", state.law}, {"solved", state.is_solved}};
   if (state.is_solved) {
-    json["rate"] = state.rate;
-    json["slope_per_s"] = state.slope;
+    json["rate"] = shown(state.rate);
+    json["slope_per_s"] = shown(state.slope);
     json["largest_rate"] = state.max_rate;
     json["lag_s"] = to_seconds(state.lag);
   }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -25,15 +26,33 @@ std::string text_of(const ordered_json& value) {
                             : value.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 
-std::string table_of(const ordered_json& json, int indent) {
+/// Whether a value is 0, null or empty, or a list of such values. A flag that is not set is not.
+bool is_nothing(const ordered_json& value) {
+  if (value.is_number()) return value == 0;
+  if (value.is_string()) return value.get_ref<const std::string&>().empty();
+  return !value.is_boolean() && std::ranges::all_of(value, is_nothing);
+}
+
+/// A table of values, without those that are nothing unless `all`. Counts those in `left_out`.
+std::string table_of(const ordered_json& json, int indent, bool all, int& left_out) {
   std::string table;
   for (const auto& [key, value] : json.items()) {
-    if (value.is_object()) {
-      table += fmt::format("{:{}}{}\n", "", indent, key) + table_of(value, indent + 2);
+    if (!all && is_nothing(value)) {
+      ++left_out;
+    } else if (value.is_object()) {
+      table +=
+          fmt::format("{:{}}{}\n", "", indent, key) + table_of(value, indent + 2, all, left_out);
     } else {
       table += fmt::format("{:{}}{:<{}}  {}\n", "", indent, key, 26 - indent, text_of(value));
     }
   }
+  return table;
+}
+
+std::string table_of(const ordered_json& json, bool all) {
+  int left_out = 0;
+  std::string table = table_of(json, 0, all, left_out);
+  if (left_out > 0) table += fmt::format("{:<26}  {} (--all)\n", "0 or empty", left_out);
   return table;
 }
 
@@ -55,12 +74,12 @@ bool is_file(const std::string& name) {
          std::filesystem::is_regular_file(name);
 }
 
-void show_stream(const std::string& stream, const Trust& trust, bool as_json) {
+void show_stream(const std::string& stream, const Trust& trust, bool as_json, bool all) {
   const ipc::StreamInfo info = ipc::inspect(stream, trust);
   ordered_json json = to_json(info);
   const std::string warning = depth_warning(info, trust);
   if (!warning.empty()) json["depth_warning"] = warning;
-  print_report(as_json ? pretty(json) : table_of(json, 0) + age_of(info));
+  print_report(as_json ? pretty(json) : table_of(json, all) + age_of(info));
 }
 
 void show_file(const std::string& path, bool only_events, bool as_json) {
@@ -75,6 +94,7 @@ void add_info(Command& verb, Action& action) {
     std::string stream;
     bool events = false;
     bool json = false;
+    bool all = false;
     Trust trust;
   };
   auto options = std::make_shared<Options>();
@@ -83,6 +103,8 @@ void add_info(Command& verb, Action& action) {
       .required();
   verb.flag("--events", options->events,
             "Of a recording: list the events instead, each with its wall clock");
+  verb.flag("--all", options->all,
+            "Of a stream: also show what is 0 or empty, which JSON always contains");
   verb.flag("--json", options->json, "Print JSON");
   add_trust(verb, options->trust);
   verb.callback([&action, options] {
@@ -90,7 +112,7 @@ void add_info(Command& verb, Action& action) {
       if (is_file(options->stream)) {
         show_file(options->stream, options->events, options->json);
       } else {
-        show_stream(options->stream, options->trust, options->json);
+        show_stream(options->stream, options->trust, options->json, options->all);
       }
       return kOk;
     };

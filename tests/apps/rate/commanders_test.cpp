@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <string>
 
+#include "apps/rate/report.hpp"
 #include "splinecast/producer.hpp"
 #include "tests/apps/rate/rate.hpp"
 
@@ -43,6 +44,26 @@ TEST_F(Rate, ShowsTheRateAndWhoRequestsIt) {
                                                    {"ramp_s", 0.01},
                                                    {"dead_man_s", 0.0},
                                                    {"dead_man_expired", false}}));
+}
+
+TEST(LawReport, ShowsNoRoundingErrorsOfTheCurve) {
+  const LawReport held{.law = "cell",
+                       .is_solved = true,
+                       .rate = 7e-34,
+                       .slope = -3e-17,
+                       .commanders = {},
+                       .followers = {}};
+  EXPECT_NE(in_words(held).find("rate 0, slope 0 /s"), std::string::npos) << in_words(held);
+  EXPECT_EQ(to_json(held)["rate"], 0.0);
+  EXPECT_EQ(to_json(held)["slope_per_s"], 0.0);
+  const LawReport slow{.law = "cell",
+                       .is_solved = true,
+                       .rate = 1e-8,
+                       .slope = -2e-9,
+                       .commanders = {},
+                       .followers = {}};
+  EXPECT_EQ(to_json(slow)["rate"], 1e-8);
+  EXPECT_EQ(to_json(slow)["slope_per_s"], -2e-9);
 }
 
 TEST_F(Rate, ARequestBeforeThereIsASolverIsTheRateAtWhichTheLawBegins) {

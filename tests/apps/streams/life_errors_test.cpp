@@ -70,6 +70,26 @@ TEST_F(Life, ASolverThatTakesOverMayNotContradictTheBoard) {
   agreeing.await_message("taken over");
 }
 
+TEST_F(Life, InfoLeavesOutWhatIsZeroOrEmptyUnlessAsked) {
+  const Ended sent = run(
+      {"replay", file_, "--stream", name(), "--clock", "recorded", "--rate", "max", "--embedded"});
+  ASSERT_EQ(sent.code, 0) << sent.err;
+  const std::string part = run({"info", name()}).out;
+  const std::string all = run({"info", name(), "--all"}).out;
+  for (const char* line : {"\n  refused  ", "\n  passed_over  ", "\n  lambda  "}) {
+    EXPECT_EQ(part.find(line), std::string::npos) << line;
+    EXPECT_NE(all.find(line), std::string::npos) << line;
+  }
+  EXPECT_EQ(part.find("null"), std::string::npos) << part;
+  const std::size_t at = part.find("\n0 or empty ");
+  ASSERT_NE(at, std::string::npos) << part;
+  EXPECT_GT(std::stol(part.substr(at + 12)), 10);
+  EXPECT_NE(part.find("(--all)", at), std::string::npos);
+  EXPECT_NE(part.find("\n  interpolated  "), std::string::npos);
+  EXPECT_NE(part.find("\n  starved                   false"), std::string::npos);
+  EXPECT_EQ(all.find("0 or empty"), std::string::npos);
+}
+
 TEST_F(Life, ASolverThatTakesOverMayNotContradictHowALiveStreamIsSolved) {
   {
     Process solver({"solve", name(), "--freeze-ahead", "4", "--max-acceleration", "1e6,2e6",

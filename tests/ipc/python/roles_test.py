@@ -177,7 +177,7 @@ class Roles(StreamTest):
             self.assertTrue(producer.wait_until_consumed(10))
             producer.close()
         for value in (-1.0, float("nan")):
-            with self.assertRaisesRegex(splinecast.BadRequest, "a start tolerance of"):
+            with self.assertRaisesRegex(splinecast.BadRequest, "start tolerance must be 0 or more, not"):
                 splinecast.Producer(self.name + ".tolerance", start_tolerance=value)
 
     def test_contexts_finish_after_a_normal_end_only(self):

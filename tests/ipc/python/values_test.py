@@ -82,7 +82,7 @@ class Times(StreamTest):
             producer.replace_from(wall)
         self.assertEqual(producer.appended, 0)
         producer.append(time.monotonic() + 59, [0.0])
-        with self.assertRaisesRegex(splinecast.BadRequest, "a horizon of 0 ns is not above 0"):
+        with self.assertRaisesRegex(splinecast.BadRequest, "horizon must be above 0, not 0 ns"):
             splinecast.Producer(name + ".zero", dimensions=1, horizon=0)
 
     def test_a_blend_in_milliseconds_is_refused(self):
