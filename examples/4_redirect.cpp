@@ -22,7 +22,8 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// Leaves the curve in 10 ms for `path`, whose times count from there; an empty one stops it.
+/// Leaves the curve 10 ms after the earliest time, for `path`, whose times count from there; an
+/// empty one stops it.
 AppendStatus redirect(Producer& producer, std::vector<Waypoint> path) {
   const Time t = producer.earliest() + 10ms;
   for (Waypoint& waypoint : path) waypoint.time += t;

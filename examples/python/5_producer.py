@@ -47,6 +47,8 @@ with splinecast.Producer(options.stream, names=["x", "y"], units="m", law=option
         try:
             arm.append(begin + u, circle(u), timeout=1.0)  # waits up to 1 s if the ring is full
         except splinecast.Refused as refused:
+            if refused.status != splinecast.AppendStatus.PAST:
+                raise
             print(refused)  # this process was held up: the motion continues with the next waypoint
     arm.finish("halt")
     arm.wait_until_consumed(10)
