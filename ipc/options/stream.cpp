@@ -4,6 +4,7 @@
 #include <cstring>
 #include <span>
 #include <stdexcept>
+#include <type_traits>
 
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/common_control.hpp"
@@ -120,7 +121,9 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
   header.clock = static_cast<std::uint64_t>(options.clock);
   ProducerOptions values = options;
   for_each_stream_option([&](const auto& row) {
-    if constexpr (row.kHasField) put_value(row, row.kOption(values), header);
+    if constexpr (std::remove_cvref_t<decltype(row)>::kHasField) {
+      put_value(row, row.kOption(values), header);
+    }
   });
   header.start_kind = static_cast<std::uint64_t>(options.start.kind);
   std::ranges::copy(options.start.value, header.start_value.begin());
@@ -198,7 +201,7 @@ void require_same_options(const std::string& stream, const RegionHeader& existin
   if (wanted.name != existing.name) contradict("other dimension names");
   if (wanted.unit != existing.unit) contradict("other units");
   for_each_stream_option([&](const auto& row) {
-    if constexpr (row.kHasField) {
+    if constexpr (std::remove_cvref_t<decltype(row)>::kHasField) {
       if (value_in(row, wanted) == value_in(row, existing) || row.key == "capacity") return;
       contradict(std::string(row.name) + ' ' + value_text(value_in(row, existing)) + ", not " +
                  value_text(value_in(row, wanted)));
