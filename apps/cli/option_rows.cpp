@@ -31,10 +31,10 @@ void parse_option(const std::string& text, TimeUnit /*unit*/, std::optional<std:
   value = parse_count(text);
 }
 void parse_option(const std::string& text, TimeUnit /*unit*/, std::optional<Tail>& value) {
-  value = parse_tail(present_word("--tail", text));
+  value = ipc::value_of_word<Tail>(present_word("--tail", text));
 }
 void parse_option(const std::string& text, TimeUnit /*unit*/, std::optional<Beyond>& value) {
-  value = parse_beyond(text);
+  value = ipc::value_of_word<Beyond>(text);
 }
 
 void refuse_option(std::string_view key, const std::string& text, const std::string& what) {

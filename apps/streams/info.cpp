@@ -26,7 +26,7 @@ std::string text_of(const ordered_json& value) {
                             : value.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 
-/// Whether a value is 0, null or empty, or a list of such values. A flag that is not set is not.
+/// Whether a value is 0, null or empty, or a list of such values. `false` is a value.
 bool is_nothing(const ordered_json& value) {
   if (value.is_number()) return value == 0;
   if (value.is_string()) return value.get_ref<const std::string&>().empty();

@@ -46,7 +46,7 @@ struct ValueOf<Member> {
 
 }  // namespace detail
 
-/// The values of an option, both limits included: for people, and to compare with.
+/// The values of an option: as a text, and as limits, both included.
 template <typename Value>
 struct ValueRange {
   std::string_view text;
@@ -64,9 +64,9 @@ struct CurveOption {
 
   std::string_view key;      ///< its name in C++, C and Python, and with its unit in JSON
   std::string_view name;     ///< its name in messages
-  std::string_view meaning;  ///< what it is, for people
+  std::string_view meaning;  ///< what it is, for help texts
   ValueRange<Value> range;
-  std::string_view initial;  ///< its default, for people; empty: it has none
+  std::string_view initial;  ///< its default, for help texts; empty: it has none
   Value preset;              ///< its default, unless write_options computes another
 };
 
@@ -178,22 +178,25 @@ constexpr void for_each_option(const Visit& visit) {
   std::apply([&](const auto&... row) { (visit(row), ...); }, kCurveOptions);
 }
 
-/// The row of a member of SolverOptions.
+/// The number of the row of an option; the number of rows if there is none.
+template <auto Option, typename... Rows>
+[[nodiscard]] consteval std::size_t row_number(const std::tuple<Rows...>& /*rows*/) {
+  std::size_t number = 0;
+  std::size_t found = sizeof...(Rows);
+  const auto compare = [&]<typename Row>() {
+    if constexpr (std::is_same_v<decltype(Option), std::remove_const_t<decltype(Row::kOption)>>) {
+      if (Row::kOption == Option) found = number;
+    }
+    ++number;
+  };
+  (compare.template operator()<Rows>(), ...);
+  return found;
+}
+
+/// The row of a member of SolverOptions. A member without a row is a compile-time error.
 template <auto Option>
 [[nodiscard]] consteval const auto& option_of() {
-  constexpr std::size_t kIndex = []<std::size_t... I>(std::index_sequence<I...>) {
-    std::size_t found = sizeof...(I);
-    const auto is_it = [&]<std::size_t At>() {
-      using Row = std::tuple_element_t<At, std::remove_const_t<decltype(kCurveOptions)>>;
-      if constexpr (std::is_same_v<std::remove_const_t<decltype(Row::kOption)>, decltype(Option)>) {
-        if (Row::kOption == Option) found = At;
-      }
-    };
-    (is_it.template operator()<I>(), ...);
-    return found;
-  }
-  (std::make_index_sequence<std::tuple_size_v<std::remove_const_t<decltype(kCurveOptions)>>>{});
-  return std::get<kIndex>(kCurveOptions);
+  return std::get<row_number<Option>(kCurveOptions)>(kCurveOptions);
 }
 
 /// Whether a row is one of a member of SolverOptions.
@@ -257,6 +260,24 @@ template <std::integral Value>
 template <typename Value>
 requires std::is_enum_v<Value>
 [[nodiscard]] std::string value_text(Value value) { return std::string(to_string(value)); }
+
+/// The value of a word as value_text writes it; nothing for another text.
+template <typename Value>
+[[nodiscard]] std::optional<Value> value_of_word(std::string_view text) {
+  if constexpr (std::is_same_v<Value, Tail>) {
+    return parse_tail(text);
+  } else {
+    static_assert(std::is_same_v<Value, Beyond>);
+    return parse_beyond(text);
+  }
+}
+
+/// Says that a value is out of its option's range.
+template <typename Row>
+[[nodiscard]] std::string out_of_range(const Row& row, typename Row::Value value) {
+  return std::string(row.name) + " must be " + std::string(row.range.text) + ", not " +
+         value_text(value);
+}
 
 [[nodiscard]] constexpr Time& min_interval_of(ProducerOptions& options) noexcept {
   return options.limits.min_interval;
@@ -333,23 +354,10 @@ constexpr void for_each_stream_option(const Visit& visit) {
   std::apply([&](const auto&... row) { (visit(row), ...); }, kStreamOptions);
 }
 
-/// The row of an option.
+/// The row of an option. An option without a row is a compile-time error.
 template <auto Option>
 [[nodiscard]] consteval const auto& stream_option() {
-  constexpr std::size_t kIndex = [] {
-    std::size_t found = 0;
-    std::size_t at = 0;
-    for_each_stream_option([&](const auto& row) {
-      if constexpr (std::is_same_v<decltype(Option),
-                                   std::remove_const_t<
-                                       decltype(std::remove_cvref_t<decltype(row)>::kOption)>>) {
-        if (std::remove_cvref_t<decltype(row)>::kOption == Option) found = at;
-      }
-      ++at;
-    });
-    return found;
-  }();
-  return std::get<kIndex>(kStreamOptions);
+  return std::get<row_number<Option>(kStreamOptions)>(kStreamOptions);
 }
 
 }  // namespace splinecast::ipc

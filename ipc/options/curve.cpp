@@ -65,8 +65,7 @@ void require_ranges(const SolverOptions& options) {
   for_each_option([&](const auto& row) {
     const auto value = value_in(row, options);
     if (!value || is_in_range(row, *value)) return;
-    throw BadRequest(std::string(row.name) + " must be " + std::string(row.range.text) + ", not " +
-                     value_text(*value));
+    throw BadRequest(out_of_range(row, *value));
   });
 }
 
@@ -128,7 +127,8 @@ void write_options(const SolverOptions& options, RegionHeader& header) {
   const Method& method = method_of(options);
   header.method = method.number;
   for_each_option([&](const auto& row) {
-    if (has_option(row, header)) {
+    // The header of a law's ring, of which this is a copy, already has the largest rate.
+    if constexpr (!kIsOfLaw<decltype(row)>) {
       put_value(row, value_in(row, options).value_or(row.preset), header);
     }
   });

@@ -72,8 +72,7 @@ void require_ranges(ProducerOptions options) {
   for_each_stream_option([&](const auto& row) {
     const auto value = row.kOption(options);
     if (is_in_range(row, value)) return;
-    throw BadRequest(std::string(row.name) + " must be " + std::string(row.range.text) + ", not " +
-                     value_text(value));
+    throw BadRequest(out_of_range(row, value));
   });
   if (options.limits.max_interval >= options.limits.min_interval) return;
   throw BadRequest("longest interval must be min_interval, " +

@@ -133,11 +133,6 @@ void put_dimension(const Fields& fields, bool has_curve, std::size_t d, RegionHe
   header.upper_bound[d] = fields.number_or("upper", kInfinity);
 }
 
-std::optional<Tail> parse_word(std::string_view text, Tail /*of*/) { return parse_tail(text); }
-std::optional<Beyond> parse_word(std::string_view text, Beyond /*of*/) {
-  return parse_beyond(text);
-}
-
 /// The value of an option of a curve; its range is checked with the header.
 template <typename Row>
 typename Row::Value take_value(const Row& row, const Fields& fields) {
@@ -146,7 +141,7 @@ typename Row::Value take_value(const Row& row, const Fields& fields) {
   if constexpr (std::is_same_v<Value, Time>) {
     return Time(fields.take<std::int64_t>(key.c_str()));
   } else if constexpr (std::is_enum_v<Value>) {
-    const auto found = parse_word(fields.take<std::string>(key.c_str()), Value{});
+    const auto found = ipc::value_of_word<Value>(fields.take<std::string>(key.c_str()));
     if (!found) throw fields.bad(key.c_str());
     return *found;
   } else {

@@ -141,9 +141,6 @@ NamedLimits limits_of(const std::string& dimension, const py::dict& kinds) {
   return found;
 }
 
-std::optional<Tail> parse(std::string_view text, Tail /*of*/) { return parse_tail(text); }
-std::optional<Beyond> parse(std::string_view text, Beyond /*of*/) { return parse_beyond(text); }
-
 /// Reads the keyword of an option into `out`, its value or an optional of it.
 template <typename Row, typename Out>
 void read_value(const Row& row, const std::string& key, const py::kwargs& keywords, Out& out) {
@@ -160,7 +157,7 @@ void read_value(const Row& row, const std::string& key, const py::kwargs& keywor
       out = as<bool>(value, name);
     } else {
       const auto text = as<std::string>(value, name);
-      const auto parsed = parse(text, Value{});
+      const auto parsed = ipc::value_of_word<Value>(text);
       if (!parsed) {
         throw BadRequest(key + ": '" + text + "' is not " + std::string(row.range.text));
       }

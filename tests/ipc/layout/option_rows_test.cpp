@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -34,20 +36,33 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-/// Requires that a reference names each option with the range and the default of its row.
+/// Where a reference declares an option.
+std::size_t place_of(const std::string& text, std::string_view key, bool is_python) {
+  const bool is_lambda = is_python && key == "lambda";
+  const std::string name = ' ' + std::string(is_lambda ? "lam" : key);
+  std::size_t place = std::string::npos;
+  for (const char* after : {"{", ";", " =", " :"}) place = std::min(place, text.find(name + after));
+  return place;
+}
+
+/// Requires that a reference declares each option with the range and the default of its row:
+/// between its name and the next one.
 void expect_rows(const std::string& text, bool is_python, const auto& for_each_row) {
   for_each_row([&](const auto& row) {
-    const bool is_lambda = is_python && row.key == "lambda";
-    const std::size_t at =
-        text.find(' ' + std::string(is_lambda ? "lam" : row.key) + (is_python ? " :" : ""));
-    ASSERT_NE(at, std::string::npos) << row.key;
-    const std::string after = text.substr(at, 420);
+    const std::size_t begin = place_of(text, row.key, is_python);
+    ASSERT_NE(begin, std::string::npos) << row.key;
+    std::size_t end = text.size();
+    for_each_row([&](const auto& other) {
+      const std::size_t place = place_of(text, other.key, is_python);
+      if (place > begin) end = std::min(end, place);
+    });
+    const std::string own = text.substr(begin, end - begin);
     using Value = typename std::remove_cvref_t<decltype(row)>::Value;
     const bool is_number = !std::is_enum_v<Value> && !std::is_same_v<Value, bool>;
     if (is_number) {
-      EXPECT_NE(after.find(lower(row.range.text)), std::string::npos) << row.key << after;
+      EXPECT_NE(own.find(lower(row.range.text)), std::string::npos) << row.key << own;
     }
-    EXPECT_NE(after.find(lower(row.initial)), std::string::npos) << row.key << after;
+    EXPECT_NE(own.find(lower(row.initial)), std::string::npos) << row.key << own;
   });
 }
 
@@ -73,6 +88,15 @@ TEST(OptionRows, HaveDefaultsWithinTheirRanges) {
   ProducerOptions initial;
   for_each_stream_option(
       [&](const auto& row) { EXPECT_TRUE(is_in_range(row, row.kOption(initial))) << row.key; });
+}
+
+TEST(OptionRows, OfABoardDoNotChangeTheLargestRateOfItsLaw) {
+  RegionHeader header{};
+  header.dimensions = 1;
+  header.is_law = 1;
+  header.largest_rate = 5;
+  write_options({}, header);
+  EXPECT_EQ(header.largest_rate, 5);
 }
 
 TEST(OptionRows, OutOfRangeAreRefusedByTheirNameAndRange) {
