@@ -10,6 +10,7 @@ inline constexpr int kFailed = 1;
 inline constexpr int kBadUsageOrInput = 2;
 inline constexpr int kFellShort = 3;
 inline constexpr int kNoStreamOrTimeOut = 4;
+inline constexpr int kIncomplete = 5;  ///< nothing differs, but something is lost or not compared
 inline constexpr int kInterrupted = 130;  ///< as a shell reports SIGINT
 
 /// Wrong usage or wrong input: exit code 2.

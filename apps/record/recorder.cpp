@@ -7,12 +7,14 @@
 #include <chrono>
 #include <csignal>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "apps/output/stream.hpp"
 #include "apps/process/descriptors.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
+#include "apps/record/output/overflow.hpp"
 #include "apps/record/output/writer_thread.hpp"
 #include "apps/record/trigger.hpp"
 #include "apps/record/watch/watcher.hpp"
@@ -45,7 +47,7 @@ class Recorder {
   OutputReport run() {
     const Time end = options_.duration ? clock_.now() + *options_.duration : Time::max();
     while (!stop_requested() && clock_.now() < end && !has_ended()) {
-      watcher_.sweep(batch_);
+      watcher_.sweep(batch_, !overflow_.is_full());
       look_at_triggers();
       const Time now = clock_.now();
       if (batch_.bytes >= kBatchBytes || now >= next_put_) put(now);
@@ -54,10 +56,9 @@ class Recorder {
     }
     watcher_.finish(batch_);
     put(clock_.now());
-    return writer_.finish();
+    overflow_.prepend_to(batch_);
+    return writer_.finish(std::move(batch_));
   }
-
-  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
 
  private:
   [[nodiscard]] bool has_ended() const noexcept {
@@ -66,11 +67,19 @@ class Recorder {
 
   void put(Time now) {
     next_put_ = now + kBatch;
-    if (batch_.records.empty() || writer_.put(batch_)) return;
-    if (dropped_ == 0) say("the disk is too slow: records are dropped, and counted in the file");
+    if (batch_.records.empty() && overflow_.is_empty()) return;
+    if (!writer_.has_room(batch_)) return drop();
+    if (!overflow_.is_empty()) overflow_.prepend_to(batch_);
+    writer_.put(batch_);
+  }
+
+  void drop() {
+    if (batch_.records.empty()) return;
+    if (!std::exchange(has_dropped_, true)) {
+      say("the disk is too slow: records are dropped, and counted in the file");
+    }
     watcher_.note_dropped(batch_);
-    dropped_ += batch_.records.size();
-    batch_ = {.now = batch_.now};
+    overflow_.take(batch_);
   }
 
   void look_at_triggers() {
@@ -91,7 +100,8 @@ class Recorder {
   Batch batch_;
   Time next_put_{};
   Time next_trigger_{};
-  std::uint64_t dropped_ = 0;
+  Overflow overflow_;
+  bool has_dropped_ = false;  ///< which has been said
 };
 
 std::uint64_t count_of(const OutputReport& report, RecordKind kind) {
@@ -99,12 +109,12 @@ std::uint64_t count_of(const OutputReport& report, RecordKind kind) {
   return found != report.records.end() ? found->second : 0;
 }
 
-std::string in_words(const OutputReport& report, std::uint64_t dropped) {
+std::string in_words(const OutputReport& report) {
   const auto s = [](std::uint64_t count) { return count == 1 ? "" : "s"; };
-  std::string text = fmt::format(
-      "{} items and {} segments recorded in {} file{}, {} bytes; {} records dropped, {} lost",
-      count_of(report, RecordKind::item), count_of(report, RecordKind::segment),
-      report.files.size(), s(report.files.size()), report.bytes, dropped, report.lost);
+  std::string text = fmt::format("{} items and {} segments recorded in {} file{}, {} bytes; {}",
+                                 report.account.items.recorded, report.account.segments.recorded,
+                                 report.files.size(), s(report.files.size()), report.bytes,
+                                 lost_in_words(report.account.lost));
   if (report.further_events > 0) {
     text += fmt::format("; {} further event{} in these dumps", report.further_events,
                         s(report.further_events));
@@ -112,16 +122,19 @@ std::string in_words(const OutputReport& report, std::uint64_t dropped) {
   return text;
 }
 
-nlohmann::ordered_json to_json(const OutputReport& report, std::uint64_t dropped) {
-  const auto count = [&](RecordKind kind) { return count_of(report, kind); };
+nlohmann::ordered_json to_json(const OutputReport& report) {
+  const LossCounts& queue = report.account.lost.at(static_cast<std::size_t>(LossCause::queue));
   return {{"files", report.files},
           {"bytes", report.bytes},
-          {"items", count(RecordKind::item)},
-          {"segments", count(RecordKind::segment)},
-          {"refusals", count(RecordKind::refusal)},
-          {"events", count(RecordKind::event)},
-          {"dropped", dropped},
-          {"lost", report.lost},
+          {"items", report.account.items.recorded},
+          {"segments", report.account.segments.recorded},
+          {"refusals", count_of(report, RecordKind::refusal)},
+          {"events", count_of(report, RecordKind::event)},
+          {"dropped", queue.all()},
+          {"lost", report.account.all_lost().all()},
+          {"lost_items", report.account.all_lost().items},
+          {"lost_segments", report.account.all_lost().segments},
+          {"reasons", reasons_json(report.account.lost)},
           {"failures", report.failures},
           {"further_events", report.further_events}};
 }
@@ -140,13 +153,13 @@ int run_record(const RecordOptions& options) {
   raise_descriptor_limit();
   Recorder recorder(options);
   const OutputReport report = recorder.run();
-  const auto json = to_json(report, recorder.dropped());
   if (options.json) {
-    print_report(json.dump(2) + "\n");
+    print_report(to_json(report).dump(2) + "\n");
   } else if (!options.quiet) {
-    say(in_words(report, recorder.dropped()));
+    for (const std::string& line : report.losses) say(line);
+    say(in_words(report));
   }
-  return report.lost + recorder.dropped() > 0 ? kFailed : kOk;
+  return report.account.all_lost().all() > 0 ? kIncomplete : kOk;
 }
 
 }  // namespace splinecast::apps::record

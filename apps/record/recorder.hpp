@@ -24,7 +24,7 @@ struct RecordOptions {
 };
 
 /// Records until a stop is requested, which is its normal end, or what the options say. Returns the
-/// exit code: kFailed if something that was read is in no file.
+/// exit code: kIncomplete if something of a stream is in no file.
 int run_record(const RecordOptions& options);
 
 }  // namespace splinecast::apps::record

@@ -50,6 +50,10 @@ std::uint16_t Writer::add_channel(std::uint16_t schema, std::string_view topic,
   return channel.id;
 }
 
+bool Writer::has_numbers(std::size_t count) const noexcept {
+  return channels_.size() + count <= kMostNumber + 1 && schemas_.size() + count <= kMostNumber;
+}
+
 void Writer::describe(Description& description) {
   if (description.is_written) return;
   records_.insert(records_.end(), description.record.begin(), description.record.end());

@@ -60,6 +60,8 @@ class Writer {
   [[nodiscard]] bool failed() const noexcept { return file_.failed(); }
   /// Bytes that Write has taken.
   [[nodiscard]] std::uint64_t bytes() const noexcept { return file_.bytes(); }
+  /// Whether this number of further channels, and of schemas, still have numbers.
+  [[nodiscard]] bool has_numbers(std::size_t count) const noexcept;
   /// Uncompressed bytes of the open chunk.
   [[nodiscard]] std::size_t open_bytes() const noexcept { return records_.size(); }
 

@@ -52,8 +52,8 @@ constexpr std::array kSummaryWords{
 
 RecordKind kind_of(std::span<const std::byte> message) {
   if (message.empty()) throw BadMessage("it is empty");
-  return checked(std::to_integer<std::uint8_t>(message[0]), RecordKind::options, RecordKind::loss,
-                 "kind");
+  return checked(std::to_integer<std::uint8_t>(message[0]), RecordKind::options,
+                 RecordKind::account, "kind");
 }
 
 Waypoint values_of(const ipc::RingItem& item) noexcept {
@@ -161,56 +161,6 @@ ipc::Summary decode_summary(std::span<const std::byte> bytes) {
   summary.end_lateness = in.take_time();
   in.require_end();
   return summary;
-}
-
-Loss& Loss::operator+=(const Loss& other) noexcept {
-  items += other.items;
-  segments += other.segments;
-  refusals += other.refusals;
-  others += other.others;
-  return *this;
-}
-
-void Loss::count(RecordKind kind) noexcept {
-  if (kind == RecordKind::item) {
-    ++items;
-  } else if (kind == RecordKind::segment) {
-    ++segments;
-  } else if (kind == RecordKind::refusal) {
-    ++refusals;
-  } else {
-    ++others;
-  }
-}
-
-Bytes encode(const Loss& loss) {
-  Bytes bytes = begin(RecordKind::loss, 33);
-  ByteWriter(bytes)
-      .put(static_cast<std::uint8_t>(loss.cause))
-      .put(loss.items)
-      .put(loss.segments)
-      .put(loss.refusals)
-      .put(loss.others);
-  return bytes;
-}
-
-Loss decode_loss(std::span<const std::byte> bytes) {
-  ByteReader in(bytes);
-  Loss loss;
-  loss.cause = checked(in.take<std::uint8_t>(), LossCause::overwritten,
-                       static_cast<LossCause>(kLossCauses - 1), "cause");
-  loss.items = in.take<ipc::Word>();
-  loss.segments = in.take<ipc::Word>();
-  loss.refusals = in.take<ipc::Word>();
-  loss.others = in.take<ipc::Word>();
-  in.require_end();
-  return loss;
-}
-
-std::string_view to_string(LossCause cause) noexcept {
-  constexpr std::array<std::string_view, kLossCauses> kNames{"overwritten", "queue full",
-                                                             "file not writable", "late commit"};
-  return kNames.at(static_cast<std::size_t>(cause));
 }
 
 }  // namespace splinecast::apps::record

@@ -53,28 +53,4 @@ struct Restart {
 /// The members that encode() writes; the others have their defaults.
 [[nodiscard]] ipc::Summary decode_summary(std::span<const std::byte> bytes);
 
-/// Why something is not in a file.
-enum class LossCause : std::uint8_t {
-  overwritten = 0,  ///< the recorder came too late to read it from shared memory
-  queue = 1,        ///< the disk was too slow
-  file = 2,         ///< the file could not be written
-  late_commit = 3,  ///< nothing is lost, but settled segments have been changed
-};
-inline constexpr std::uint8_t kLossCauses = 4;
-struct Loss {
-  LossCause cause{};
-  ipc::Word items = 0;
-  ipc::Word segments = 0;
-  ipc::Word refusals = 0;
-  ipc::Word others = 0;  ///< events, restarts and summaries
-
-  [[nodiscard]] ipc::Word all() const noexcept { return items + segments + refusals + others; }
-  Loss& operator+=(const Loss& other) noexcept;
-  /// Counts a record.
-  void count(RecordKind kind) noexcept;
-};
-[[nodiscard]] Bytes encode(const Loss& loss);
-[[nodiscard]] Loss decode_loss(std::span<const std::byte> bytes);
-[[nodiscard]] std::string_view to_string(LossCause cause) noexcept;
-
 }  // namespace splinecast::apps::record

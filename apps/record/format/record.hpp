@@ -17,6 +17,7 @@ enum class RecordKind : std::uint8_t {
   restart = 5,
   summary = 6,
   loss = 7,
+  account = 8,
   event = 100,  ///< JSON text of the channel of events
 };
 
@@ -26,9 +27,12 @@ struct Record {
   RecordKind kind{};
   ipc::Word number = 0;  ///< of an item, of a refused item, of a segment; of a restart the first
                          ///< item that it needs; of options the id of the stream
-  Time log_time{};       ///< stream time on the host's wall clock: see docs/file-formats.md
+  ipc::Word next = 0;    ///< of an item and a segment the number that follows; of options 1 if they
+                         ///< are those of a new solver, too
+  Time own_time{};       ///< stream time on the host's wall clock: see docs/file-formats.md
   Time seen{};           ///< wall clock when it was read
-  Bytes bytes{};         ///< the message, with its kind in the first byte; of an event its text
+  bool is_counted = false;  ///< whether the account has it as recorded: not if it is read again
+  Bytes bytes{};            ///< the message, with its kind in the first byte; of an event its text
 };
 
 }  // namespace splinecast::apps::record

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <span>
+#include <stdexcept>
 #include <utility>
 
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
+#include "apps/record/format/loss.hpp"
 #include "apps/record/watch/events.hpp"
 
 namespace splinecast::apps::record {
@@ -22,6 +25,8 @@ constexpr Time kTryAgain = std::chrono::seconds(1);
 constexpr Time kTidy = std::chrono::seconds(1);
 /// Shortest life of a file before it is ended because of its size.
 constexpr Time kShortest = std::chrono::seconds(1);
+/// The account of a stream that has ended is kept longer than its records, by this time.
+constexpr Time kKeepAccount = std::chrono::seconds(10);
 
 }  // namespace
 
@@ -38,7 +43,7 @@ Files::Files(const OutputOptions& options)
   const bool is_numbered = options_.max_bytes || options_.max_files;
   const std::string path = is_numbered ? names_.next("", 1) : names_.path();
   file_ = std::make_unique<RecordingFile>(path, options_.file);
-  own_.push_back(path);
+  own_.push_back({path, file_->id()});
   report_.files.push_back(path);
 }
 
@@ -51,7 +56,12 @@ void Files::take(Batch&& batch) {
 
 void Files::take_events(const Batch& batch) {
   for (const EventNote& event : batch.events) {
-    if (event.kind == EventKind::retired) memory_.end(event.stream);
+    if (event.kind == EventKind::retired) {
+      memory_.end(event.stream);
+      accounts_.end(event.stream);
+      if (file_) write_account(event.stream, batch.now, false);
+      if (file_) file_->end(event.stream);
+    }
     if (!keeps_memory() || event.is_old || !options_.on.contains(event.kind)) continue;
     const std::string_view why = to_string(event.kind);
     if (dumps_.take_event(why, batch.now)) begin_dump(why, batch.now);
@@ -61,38 +71,91 @@ void Files::take_events(const Batch& batch) {
 
 void Files::take(Record record) {
   ++report_.records[record.kind];
+  accounts_.add(record);
+  if (record.kind == RecordKind::options && file_ && !file_->can_begin_stream()) {
+    rotate(record.seen);
+  }
   if (file_) {
-    file_->write(record);
+    write(record);
     if (!has_chunk_) {
       has_chunk_ = true;
       chunk_since_ = record.seen;
     }
   }
   const Time now = record.seen;
-  memory_.add(std::move(record), [this](const Record& forgotten, std::uint64_t sequence) {
-    count_lost(forgotten, sequence);
-  });
-  if (file_ && file_->failed()) fail(file_->why(), now);
+  memory_.add(std::move(record), forget());
+  if (file_ && file_->failed()) return fail(file_->why(), now);
+  if (file_ && memory_.bytes() > RecordMemory::kMostHeld / 2) end_chunk(now);
 }
 
-/// Counts a record that is forgotten and in no file, if it should be in one.
-void Files::count_lost(const Record& record, std::uint64_t sequence) {
-  if (!wants_file_ || file_ || sequence < whole_until_) return;
-  Loss& loss = lost_[record.stream];
-  loss.cause = LossCause::file;
-  loss.count(record.kind);
-  ++report_.lost;
+/// Writes a record. One that cannot be written is lost, and no other one of any stream is.
+void Files::write(const Record& record) {
+  try {
+    file_->write(record);
+  } catch (const std::runtime_error& error) {
+    say(fmt::format("{}: {}", file_->path(), error.what()));
+    accounts_.forget(record, 0, true);
+  }
+}
+
+/// Counts records that are forgotten and in no file: as lost, if they should be in one.
+RecordMemory::Forget Files::forget() {
+  return [this](const Record& record, std::uint64_t sequence, ipc::Word stream_id) {
+    if (sequence < whole_until_ || file_) return;
+    accounts_.forget(record, stream_id, wants_file_);
+    if (!wants_file_) return;
+    Loss loss{.cause = LossCause::file};
+    if (record.kind == RecordKind::loss) {
+      loss = decode_loss(std::span(record.bytes).subspan(1));
+    } else if (record.is_counted) {
+      loss.count(record);
+    }
+    lost_[{record.stream, stream_id}].add(loss);
+  };
 }
 
 void Files::note_whole_chunks() noexcept {
   if (!file_ || file_->failed()) return;
   whole_until_ = memory_.added();
+  memory_.need_from(whole_until_);
   has_chunk_ = false;
+}
+
+/// Writes the account of a stream, if the file has the stream.
+void Files::write_account(std::uint32_t stream, Time now, bool is_needed) {
+  if (!file_->has(stream)) return;
+  const Account* const account = accounts_.changed(stream, is_needed);
+  if (account == nullptr) return;
+  write({.stream = stream,
+         .kind = RecordKind::account,
+         .own_time = now,
+         .seen = now,
+         .bytes = encode(*account)});
+}
+
+void Files::write_accounts(Time now) {
+  if (!file_ || file_->failed()) return;
+  for (const std::uint32_t stream : accounts_.all_changed()) write_account(stream, now, false);
+}
+
+void Files::say_losses() {
+  const Account total = accounts_.total();
+  const LossCounts all = total.all_lost();
+  if (all.items == said_.items && all.segments == said_.segments) return;
+  said_ = all;
+  say(lost_in_words(total.lost) + " so far");
+}
+
+OutputReport Files::report() const {
+  OutputReport report = report_;
+  report.account = accounts_.total();
+  report.losses = accounts_.losses();
+  return report;
 }
 
 void Files::trigger(Time now) {
   if (!keeps_memory()) return rotate(now);
-  if (file_) close_file();
+  if (file_) close_file(now);
   dumps_.take_trigger(now);
   begin_dump("trigger", now);
 }
@@ -100,6 +163,7 @@ void Files::trigger(Time now) {
 /// Begins a file with what is in memory, and `why` in its name.
 void Files::begin_dump(std::string_view why, Time now) {
   wants_file_ = true;
+  memory_.need_from(whole_until_);
   wanted_ = why;
   is_part_ = false;
   next_try_ = now;
@@ -107,17 +171,21 @@ void Files::begin_dump(std::string_view why, Time now) {
 }
 
 void Files::end_dump(Time now) {
-  close_file();
+  close_file(now);
   wants_file_ = false;
+  memory_.need_from(memory_.added());
   if (const auto next = dumps_.close(now)) begin_dump(*next, now);
 }
 
 /// Begins a file with what is in memory. Returns whether its first chunk has been written.
-bool Files::open(const std::string& path, Time now) {
+bool Files::open(Time now) {
+  const std::size_t least = keeps_memory() ? 1 : 2;  // the first of other files has no number, or 1
+  std::string path;
   try {
+    path = names_.next(wanted_, least);
     file_ = std::make_unique<RecordingFile>(path, options_.file);
   } catch (const Failure& error) {
-    names_.forget_last(wanted_);
+    if (!path.empty()) names_.forget_last(wanted_);
     fail(error.what(), now);
     return false;
   }
@@ -134,7 +202,7 @@ bool Files::open(const std::string& path, Time now) {
   memory_.hold(false);
   opened_ = now;
   lost_.clear();
-  own_.push_back(path);
+  own_.push_back({path, file_->id()});
   report_.files.push_back(path);
   remove_oldest();
   return true;
@@ -146,22 +214,22 @@ void Files::write_memory(Time now) {
   const bool is_short = is_part_ && !is_failing_;
   memory_.give(is_short ? RecordMemory::Extent::newest_start : RecordMemory::Extent::all,
                [&](const Record& record) {
-                 file_->write(record);
-                 if (record.kind == RecordKind::options) write_loss(record.stream, now);
+                 write(record);
+                 if (record.kind == RecordKind::options) write_losses(record, now);
                });
   file_->end_chunk();
 }
 
-/// Writes what was lost of a stream before this file: before its other records, with which a new
-/// part begins.
-void Files::write_loss(std::uint32_t stream, Time now) {
-  const auto found = lost_.find(stream);
-  if (found == lost_.end()) return;
-  const Loss& loss = found->second;
+/// Writes what was lost of a stream before this file, and the account until now: before the
+/// stream's other records, with which a new part begins.
+void Files::write_losses(const Record& options, Time now) {
+  const auto found = lost_.find({options.stream, options.number});
   Batch batch{.now = now};
-  batch.add({.stream = stream, .kind = RecordKind::loss, .log_time = now, .bytes = encode(loss)});
-  add_event(batch, {.stream = stream, .kind = EventKind::lost}, now, now, members_of(loss));
-  for (const Record& record : batch.records) file_->write(record);
+  if (found != lost_.end()) {
+    for (const Loss& loss : found->second.losses()) add_loss(batch, options.stream, loss, now);
+  }
+  for (const Record& record : batch.records) write(record);
+  write_account(options.stream, now, true);
 }
 
 void Files::fail(const std::string& why, Time now) {
@@ -178,7 +246,8 @@ void Files::fail(const std::string& why, Time now) {
   next_try_ = now + kTryAgain;
 }
 
-void Files::close_file() {
+void Files::close_file(Time now) {
+  write_accounts(now);
   file_->finish();
   report_.bytes += file_->written();
   if (!file_->why().empty()) {
@@ -192,7 +261,7 @@ void Files::close_file() {
 
 void Files::rotate(Time now) {
   if (!file_) return;
-  close_file();
+  close_file(now);
   is_part_ = true;
   next_try_ = now;
   tick(now);
@@ -200,7 +269,8 @@ void Files::rotate(Time now) {
 
 void Files::remove_oldest() {
   while (options_.max_files && own_.size() > *options_.max_files) {
-    unlink(own_.front().c_str());
+    const OwnFile& oldest = own_.front();
+    if (file_id(oldest.path) == oldest.id) unlink(oldest.path.c_str());  // else it was replaced
     own_.pop_front();
   }
 }
@@ -208,7 +278,10 @@ void Files::remove_oldest() {
 void Files::tick(Time now) {
   if (now >= next_tidy_) {
     next_tidy_ = now + kTidy;
-    memory_.tidy(now, [this](const Record& record, std::uint64_t n) { count_lost(record, n); });
+    memory_.tidy(now, forget());
+    write_accounts(now);
+    accounts_.tidy(now - options_.last.value_or(Time::zero()) - kKeepAccount);
+    say_losses();
   }
   try_again(now);
   end_chunk_if_due(now);
@@ -225,14 +298,16 @@ void Files::tick(Time now) {
 /// Opens a file if one should be open.
 void Files::try_again(Time now) {
   if (!wants_file_ || file_ || now < next_try_) return;
-  const std::size_t least = keeps_memory() ? 1 : 2;  // the first of other files has no number, or 1
-  if (open(names_.next(wanted_, least), now) && std::exchange(is_failing_, false)) {
+  if (open(now) && std::exchange(is_failing_, false)) {
     say(fmt::format("recording continues in {}", file_->path()));
   }
 }
 
 void Files::end_chunk_if_due(Time now) {
-  if (!file_ || !has_chunk_ || now - chunk_since_ < kChunk) return;
+  if (file_ && has_chunk_ && now - chunk_since_ >= kChunk) end_chunk(now);
+}
+
+void Files::end_chunk(Time now) {
   file_->end_chunk();
   if (file_->failed()) return fail(file_->why(), now);
   note_whole_chunks();
@@ -243,6 +318,7 @@ void Files::check_file(Time now) {
   if (!file_ || now < next_check_) return;
   next_check_ = now + kCheck;
   if (file_->is_in_place()) return;
+  write_accounts(now);
   file_->finish();
   note_whole_chunks();
   own_.pop_back();  // another file may have its name
@@ -256,10 +332,9 @@ void Files::finish(Time now) {
     try_again(now);
   }
   if (file_) {
-    close_file();
+    close_file(now);
   } else if (wants_file_) {
-    memory_.clear(
-        [this](const Record& record, std::uint64_t sequence) { count_lost(record, sequence); });
+    memory_.clear(forget());
   }
 }
 

@@ -9,8 +9,11 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "apps/record/format/loss.hpp"
+#include "apps/record/output/accounts.hpp"
 #include "apps/record/output/dump_schedule.hpp"
 #include "apps/record/output/file_names.hpp"
 #include "apps/record/output/memory.hpp"
@@ -35,7 +38,8 @@ struct OutputReport {
   std::vector<std::string> files{};
   std::uint64_t bytes = 0;
   std::map<RecordKind, std::uint64_t> records{};  ///< read from the streams, by kind
-  std::uint64_t lost = 0;                         ///< records that no file has
+  Account account{};                              ///< of all streams
+  std::vector<std::string> losses{};              ///< of streams, in words
   std::size_t failures = 0;                       ///< files that could not be written to their end
   std::uint64_t further_events = 0;  ///< events of `on` that began no dump, because one was open
 };
@@ -65,7 +69,7 @@ class Files {
   /// Ends the last file. With `last`, dumps what no dump has.
   void finish(Time now);
 
-  [[nodiscard]] const OutputReport& report() const noexcept { return report_; }
+  [[nodiscard]] OutputReport report() const;
 
  private:
   void take(Record record);
@@ -73,24 +77,33 @@ class Files {
   void begin_dump(std::string_view why, Time now);
   void end_dump(Time now);
   [[nodiscard]] bool keeps_memory() const noexcept { return options_.last.has_value(); }
-  bool open(const std::string& path, Time now);
+  bool open(Time now);
   void write_memory(Time now);
-  void close_file();
+  void close_file(Time now);
   void check_file(Time now);
   void end_chunk_if_due(Time now);
+  void end_chunk(Time now);
   void try_again(Time now);
   void fail(const std::string& why, Time now);
   void note_whole_chunks() noexcept;
   void rotate(Time now);
   void remove_oldest();
-  void count_lost(const Record& record, std::uint64_t sequence);
-  void write_loss(std::uint32_t stream, Time now);
+  void write(const Record& record);
+  void write_losses(const Record& options, Time now);
+  void write_account(std::uint32_t stream, Time now, bool is_needed);
+  void write_accounts(Time now);
+  void say_losses();
+  [[nodiscard]] RecordMemory::Forget forget();
 
   OutputOptions options_;
   FileNames names_;
   RecordMemory memory_;
   std::unique_ptr<RecordingFile> file_;
-  std::deque<std::string> own_;  ///< files that exist, oldest first
+  struct OwnFile {
+    std::string path;
+    FileId id;
+  };
+  std::deque<OwnFile> own_;  ///< files that exist, oldest first
   std::string wanted_;       ///< kind of the file that could not be created; of a dump its event
   bool wants_file_ = false;  ///< whether a file should be open
   bool is_failing_ = false;  ///< whether the last one failed, which has been said
@@ -103,7 +116,9 @@ class Files {
   Time next_tidy_{};
   Time next_try_{};
   std::uint64_t whole_until_ = 0;  ///< records before this number are in whole chunks, or dumped
-  std::map<std::uint32_t, Loss> lost_;
+  Accounts accounts_;
+  std::map<std::pair<std::uint32_t, ipc::Word>, LossList> lost_;  ///< by stream and its id
+  LossCounts said_{};                                             ///< losses that have been said
   OutputReport report_;
 };
 

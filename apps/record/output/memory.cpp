@@ -60,13 +60,23 @@ void RecordMemory::drop_old(std::uint32_t number, Time oldest, const Forget& for
       continue;
     }
     empty(stream, forget);
-    at = streams_.erase(at);
+    at = may_erase(stream) ? streams_.erase(at) : std::next(at);
   }
 }
 
 void RecordMemory::empty(Stream& stream, const Forget& forget) {
-  while (!stream.items.empty()) pop(stream, stream.items, forget);
-  while (!stream.others.empty()) pop(stream, stream.others, forget);
+  for (auto* const list : {&stream.items, &stream.others}) {
+    while (!list->empty() && may_forget(list->front())) pop(stream, *list, forget);
+  }
+}
+
+bool RecordMemory::may_forget(const Kept& kept) const noexcept {
+  return bytes_ > kMostHeld || (!holds_ && kept.sequence < needed_from_);
+}
+
+bool RecordMemory::may_erase(const Stream& stream) const noexcept {
+  const bool keeps_options = holds_ && streams_.size() <= kMostEmpty;
+  return stream.items.empty() && stream.others.empty() && !keeps_options;
 }
 
 void RecordMemory::end(std::uint32_t stream) noexcept {
@@ -78,33 +88,31 @@ void RecordMemory::tidy(Time now, const Forget& forget) {
   for (auto at = streams_.begin(); at != streams_.end();) {
     Stream& stream = at->second;
     trim(stream, now, forget);
-    const bool is_held = holds_ && bytes_ <= kMostHeld;
-    if (is_held || !stream.has_ended || stream.newest > now - window_) {
-      ++at;
-      continue;
-    }
-    empty(stream, forget);
-    at = streams_.erase(at);
+    const bool is_old = stream.has_ended && stream.newest <= now - window_;
+    if (is_old) empty(stream, forget);
+    at = is_old && may_erase(stream) ? streams_.erase(at) : std::next(at);
   }
 }
 
 void RecordMemory::trim(Stream& stream, Time now, const Forget& forget) {
-  if (holds_ && bytes_ <= kMostHeld) return;
   const Time oldest = now - window_;
   // The newest start that is old enough is the one from which everything is kept.
   while (stream.starts.size() > 1 && stream.starts[1].seen <= oldest) stream.starts.pop_front();
   const bool has_start = !stream.starts.empty() && stream.starts.front().seen <= oldest;
   if (has_start) {
     const Start& start = stream.starts.front();
-    while (!stream.items.empty() && stream.items.front().record.number < start.first_item) {
+    while (!stream.items.empty() && stream.items.front().record.number < start.first_item &&
+           may_forget(stream.items.front())) {
       pop(stream, stream.items, forget);
     }
-    while (!stream.others.empty() && stream.others.front().sequence < start.sequence) {
+    while (!stream.others.empty() && stream.others.front().sequence < start.sequence &&
+           may_forget(stream.others.front())) {
       pop(stream, stream.others, forget);
     }
   }
   for (auto* const list : {&stream.items, &stream.others}) {
-    while (stream.bytes > kMostBeyond && !list->empty() && list->front().record.seen < oldest) {
+    while (stream.bytes > kMostBeyond && !list->empty() && list->front().record.seen < oldest &&
+           may_forget(list->front())) {
       pop(stream, *list, forget);
     }
   }
@@ -114,11 +122,15 @@ void RecordMemory::pop(Stream& stream, std::deque<Kept>& from, const Forget& for
   const Kept& front = from.front();
   stream.bytes -= size_of(front.record);
   bytes_ -= size_of(front.record);
-  if (forget) forget(front.record, front.sequence);
+  if (forget) {
+    forget(front.record, front.sequence, stream.options ? stream.options->number : 0);
+  }
   from.pop_front();
 }
 
 void RecordMemory::clear(const Forget& forget) {
+  holds_ = false;
+  needed_from_ = kNone;
   while (!streams_.empty()) drop_old(streams_.begin()->first, Time::max(), forget);
 }
 

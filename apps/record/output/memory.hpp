@@ -21,15 +21,21 @@ class RecordMemory {
   explicit RecordMemory(Time window) : window_(window) {}
 
   /// Called for each record that is no longer kept. `sequence`: how many were added before it.
-  using Forget = std::function<void(const Record& record, std::uint64_t sequence)>;
+  /// `stream_id`: of its stream.
+  using Forget =
+      std::function<void(const Record& record, std::uint64_t sequence, ipc::Word stream_id)>;
 
   /// Adds a record, and forgets those that are no longer needed.
   void add(Record record, const Forget& forget);
 
-  /// While `holds` is set, forgets nothing until the records take kMostHeld: no file can be
-  /// written.
+  /// Records from this sequence number on are not in a file yet, and should be: forgets none of
+  /// them until all records take kMostHeld.
+  void need_from(std::uint64_t sequence) noexcept { needed_from_ = sequence; }
+  /// Forgets nothing until the records take kMostHeld: no file can be written.
   void hold(bool holds) noexcept { holds_ = holds; }
   static constexpr std::size_t kMostHeld = std::size_t{64} << 20U;
+  /// Meanwhile, the options of this number of streams are kept, for what is said of their losses.
+  static constexpr std::size_t kMostEmpty = 4096;
 
   /// Which records give() gives: all, or of each stream those from the newest place on at which
   /// verification can begin.
@@ -51,6 +57,8 @@ class RecordMemory {
   [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
 
  private:
+  static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+
   struct Kept {
     std::uint64_t sequence;
     Record record;
@@ -76,11 +84,14 @@ class RecordMemory {
   void empty(Stream& stream, const Forget& forget);
   void trim(Stream& stream, Time now, const Forget& forget);
   void pop(Stream& stream, std::deque<Kept>& from, const Forget& forget);
+  [[nodiscard]] bool may_forget(const Kept& kept) const noexcept;
+  [[nodiscard]] bool may_erase(const Stream& stream) const noexcept;
 
   Time window_;
   /// By number; several if a stream was recreated.
   std::multimap<std::uint32_t, Stream> streams_;
   bool holds_ = false;
+  std::uint64_t needed_from_ = kNone;
   std::uint64_t added_ = 0;
   std::size_t bytes_ = 0;
 };

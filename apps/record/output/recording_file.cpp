@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kJson = "json";
 constexpr std::string_view kJsonSchema = "jsonschema";
-constexpr mode_t kMode = 0644;
+constexpr mode_t kMode = 0600;
 
 int create(const std::string& path) {
   const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
@@ -51,7 +51,7 @@ RecordingFile::Stream::Stream(const StreamOptions& options, double states_hz)
 }
 
 RecordingFile::RecordingFile(std::string path, const FileOptions& options)
-    : path_(std::move(path)), options_(options), descriptor_(create(path_)) {
+    : path_(std::move(path)), options_(options), descriptor_(create(path_)), id_(file_id(path_)) {
   const auto write = [this](std::span<const std::byte> bytes) { return write_bytes(bytes); };
   writer_ = std::make_unique<mcap::Writer>(
       write, mcap::WriterOptions{.profile = "", .compression = options_.compression});
@@ -83,10 +83,15 @@ void RecordingFile::cut_to_whole_chunks() noexcept {
 
 std::uint16_t RecordingFile::add_channel(const std::string& topic, std::string_view schema,
                                          const std::string& text) {
-  const std::string key = topic + '\n' + text;
-  if (const auto found = channels_.find(key); found != channels_.end()) return found->second;
   const bool is_json = !text.empty();
-  const std::uint16_t id = is_json ? writer_->add_schema(schema, kJsonSchema, text) : 0;
+  std::uint16_t id = 0;
+  if (is_json) {
+    const auto [known, is_new] = schemas_.try_emplace(fmt::format("{}\n{}", schema, text));
+    if (is_new) known->second = writer_->add_schema(schema, kJsonSchema, text);
+    id = known->second;
+  }
+  const std::string key = fmt::format("{}\n{}", topic, id);
+  if (const auto found = channels_.find(key); found != channels_.end()) return found->second;
   const std::uint16_t channel = writer_->add_channel(id, topic, is_json ? kJson : "splinecast", {});
   channels_.emplace(key, channel);
   return channel;
@@ -117,13 +122,13 @@ void RecordingFile::write(const Record& record) {
   if (found == streams_.end()) throw BadMessage("its stream has no options");
   Stream& stream = found->second;
   if (record.kind == RecordKind::event) {
-    return put(stream, stream.events, record.log_time, record.seen, record.bytes);
+    return put(stream, stream.events, record.own_time, record.seen, record.bytes);
   }
-  put(stream, stream.exact, record.log_time, record.seen, record.bytes);
+  put(stream, stream.exact, record.own_time, record.seen, record.bytes);
   const auto body = std::span<const std::byte>(record.bytes).subspan(1);
   if (record.kind == RecordKind::item) {
     const NumberedItem item = decode_item(body, stream.dimensions);
-    put(stream, stream.waypoints, record.log_time, record.seen,
+    put(stream, stream.waypoints, record.own_time, record.seen,
         stream.json.waypoint(item.number, item.item));
   } else if (record.kind == RecordKind::segment && stream.sampled) {
     put_states(stream, record);
@@ -139,14 +144,14 @@ void RecordingFile::put_states(Stream& stream, const Record& record) {
   });
 }
 
-void RecordingFile::put(Stream& stream, std::uint16_t channel, Time log_time, Time seen,
+void RecordingFile::put(Stream& stream, std::uint16_t channel, Time own_time, Time seen,
                         std::span<const std::byte> data) {
-  writer_->write(channel, stream.sequence[channel]++, log_time, seen, data);
+  writer_->write(channel, stream.sequence[channel]++, own_time, seen, data);
 }
 
-void RecordingFile::put(Stream& stream, std::uint16_t channel, Time log_time, Time seen,
+void RecordingFile::put(Stream& stream, std::uint16_t channel, Time own_time, Time seen,
                         std::string_view text) {
-  put(stream, channel, log_time, seen, std::as_bytes(std::span(text)));
+  put(stream, channel, own_time, seen, std::as_bytes(std::span(text)));
 }
 
 void RecordingFile::end_chunk() { writer_->end_chunk(); }
@@ -156,11 +161,12 @@ void RecordingFile::finish() {
   if (close(std::exchange(descriptor_, -1)) != 0 && why_.empty()) why_ = std::strerror(errno);
 }
 
-bool RecordingFile::is_in_place() const noexcept {
-  struct stat open_file {};
+bool RecordingFile::is_in_place() const noexcept { return file_id(path_) == id_; }
+
+FileId file_id(const std::string& path) noexcept {
   struct stat named {};
-  return fstat(descriptor_, &open_file) == 0 && stat(path_.c_str(), &named) == 0 &&
-         open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
+  if (stat(path.c_str(), &named) != 0) return std::nullopt;
+  return std::pair(named.st_dev, named.st_ino);
 }
 
 }  // namespace splinecast::apps::record

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "apps/mcap/output/writer.hpp"
 #include "apps/record/format/json.hpp"
@@ -22,10 +25,15 @@ struct FileOptions {
   double states_hz = 0;  ///< rate of the channel of states; 0: none
 };
 
+/// Which file a path names: its device and inode; nothing if there is none.
+using FileId = std::optional<std::pair<dev_t, ino_t>>;
+[[nodiscard]] FileId file_id(const std::string& path) noexcept;
+
 /// One file of a recorder: for each stream its channels and metadata. One thread uses it.
 class RecordingFile {
  public:
-  /// Creates the file, which must not exist. Throws Failure, with the system's reason.
+  /// Creates the file, which must not exist, for its owner only (mode 0600). Throws Failure, with
+  /// the system's reason.
   RecordingFile(std::string path, const FileOptions& options);
   RecordingFile(const RecordingFile&) = delete;
   RecordingFile& operator=(const RecordingFile&) = delete;
@@ -35,6 +43,13 @@ class RecordingFile {
   /// Adds a record to the open chunk. A stream's first record has its options. Throws BadMessage
   /// for a record that the recorder did not make.
   void write(const Record& record);
+  /// The stream has ended: forgets what its messages are made with.
+  void end(std::uint32_t stream) { streams_.erase(stream); }
+
+  /// Whether the file has the stream.
+  [[nodiscard]] bool has(std::uint32_t stream) const { return streams_.contains(stream); }
+  /// Whether the file can have another stream.
+  [[nodiscard]] bool can_begin_stream() const noexcept { return writer_->has_numbers(4); }
 
   /// Writes the open chunk.
   void end_chunk();
@@ -47,6 +62,7 @@ class RecordingFile {
   [[nodiscard]] const std::string& why() const noexcept { return why_; }
   /// Whether the path still refers to this file. A system call.
   [[nodiscard]] bool is_in_place() const noexcept;
+  [[nodiscard]] const FileId& id() const noexcept { return id_; }
   /// Bytes of the file, and those of the open chunk before compression.
   [[nodiscard]] std::uint64_t bytes() const noexcept {
     return writer_->bytes() + writer_->open_bytes();
@@ -73,18 +89,20 @@ class RecordingFile {
   void begin_stream(const Record& record);
   std::uint16_t add_channel(const std::string& topic, std::string_view schema,
                             const std::string& text);
-  void put(Stream& stream, std::uint16_t channel, Time log_time, Time seen,
+  void put(Stream& stream, std::uint16_t channel, Time own_time, Time seen,
            std::span<const std::byte> data);
-  void put(Stream& stream, std::uint16_t channel, Time log_time, Time seen, std::string_view text);
+  void put(Stream& stream, std::uint16_t channel, Time own_time, Time seen, std::string_view text);
   void put_states(Stream& stream, const Record& record);
 
   std::string path_;
   FileOptions options_;
   int descriptor_;
+  FileId id_;
   std::string why_;
   std::unique_ptr<mcap::Writer> writer_;
   std::map<std::uint32_t, Stream> streams_;
-  std::map<std::string, std::uint16_t> channels_;  ///< by topic and schema
+  std::map<std::string, std::uint16_t, std::less<>> schemas_;  ///< by name and text
+  std::map<std::string, std::uint16_t> channels_;              ///< by topic and schema
 };
 
 }  // namespace splinecast::apps::record

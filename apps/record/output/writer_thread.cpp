@@ -33,15 +33,15 @@ WriterThread::~WriterThread() {
   thread_.join();
 }
 
-bool WriterThread::put(Batch& batch) {
+bool WriterThread::has_room(const Batch& batch) {
+  const std::lock_guard lock(mutex_);
+  rethrow();
+  return queued_ == 0 || queued_ + batch.bytes <= kMostQueued;
+}
+
+void WriterThread::put(Batch& batch) {
   const std::size_t bytes = batch.bytes;
-  {
-    const std::lock_guard lock(mutex_);
-    rethrow();
-    if (queued_ > 0 && queued_ + bytes > kMostQueued) return false;
-  }
   push(std::exchange(batch, Batch{.now = batch.now}), bytes);
-  return true;
 }
 
 void WriterThread::trigger() { push(Trigger{}, 0); }
@@ -55,7 +55,8 @@ void WriterThread::push(Job job, std::size_t bytes) {
   wakes_.notify_one();
 }
 
-OutputReport WriterThread::finish() {
+OutputReport WriterThread::finish(Batch last) {
+  put(last);
   {
     const std::lock_guard lock(mutex_);
     is_ending_ = true;

@@ -27,15 +27,19 @@ class WriterThread {
   WriterThread& operator=(const WriterThread&) = delete;
   ~WriterThread();
 
-  /// Puts a batch into the queue and empties it. Returns false, without changing it, if the queue
-  /// is full: the caller counts what it drops. Rethrows an exception of the thread.
-  [[nodiscard]] bool put(Batch& batch);
+  /// Whether the queue has room for a batch: the caller counts what it drops. Rethrows an exception
+  /// of the thread.
+  [[nodiscard]] bool has_room(const Batch& batch);
+
+  /// Puts a batch into the queue and empties it.
+  void put(Batch& batch);
 
   /// Puts a trigger into the queue: a request to dump, or to begin a new file.
   void trigger();
 
-  /// Writes all of the queue, ends the last file and the thread. Rethrows an exception of it.
-  OutputReport finish();
+  /// Writes all of the queue and a last batch, ends the last file and the thread. Rethrows an
+  /// exception of it.
+  OutputReport finish(Batch last);
 
  private:
   struct Trigger {};

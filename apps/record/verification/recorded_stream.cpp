@@ -33,12 +33,17 @@ void RecordedStream::take(std::span<const std::byte> message) {
     case RecordKind::summary:
       summary_ = decode_summary(body);
       return;
+    case RecordKind::account:
+      return take_account(decode_account(body));
     default:
       return take_loss(decode_loss(body));
   }
 }
 
-void RecordedStream::finish() { end_part(); }
+void RecordedStream::finish() {
+  end_part();
+  settle_account();
+}
 
 /// Begins another stream, unless it is the same one whose solver has come.
 void RecordedStream::take_options(std::span<const std::byte> body) {
@@ -50,6 +55,7 @@ void RecordedStream::take_options(std::span<const std::byte> body) {
                        options_->waypoints.dimensions == options.waypoints.dimensions;
   if (!is_same) {
     end_part();
+    if (options_ && options_->waypoints.stream_id != options.waypoints.stream_id) settle_account();
     items_.clear();
     items_end_ = complete_from_ = 0;
     summary_ = {};
@@ -60,6 +66,9 @@ void RecordedStream::take_options(std::span<const std::byte> body) {
 
 void RecordedStream::take_item(NumberedItem item) {
   const bool is_first = items_.empty();
+  ++found_.items;
+  if (!first_ || item.number < *first_) first_ = account_ ? item.number : 0;
+  covered_.add({.first = item.number, .count = 1});
   if (!is_first && item.number < items_end_) return;  // read before a file was begun
   if (is_first || item.number != items_end_) {
     end_part();
@@ -98,10 +107,31 @@ void RecordedStream::take_restart(Restart restart) {
 }
 
 void RecordedStream::take_loss(const Loss& loss) {
-  found_.lost += loss;
+  found_.lost.at(static_cast<std::size_t>(loss.cause)) +=
+      LossCounts{.items = loss.items.count,
+                 .segments = loss.segments.count,
+                 .refusals = loss.refusals,
+                 .others = loss.others};
+  covered_.add(loss.items);
   if (loss.cause == LossCause::late_commit) ++found_.late_commits;
-  if (loss.items + loss.refusals > 0) complete_from_ = items_end_;
+  if (loss.items.count + loss.refusals > 0) complete_from_ = items_end_;
   end_part();
+}
+
+/// A file that continues another one begins with an account of what is before it.
+void RecordedStream::take_account(const Account& account) {
+  if (!account_ && !first_) first_ = account.items.end;
+  account_ = account;
+}
+
+void RecordedStream::settle_account() {
+  if (account_) {
+    found_.sent += account_->items.end;
+    found_.unaccounted += covered_.missing(first_.value_or(0), account_->items.end);
+  }
+  covered_ = {};
+  first_.reset();
+  account_.reset();
 }
 
 void RecordedStream::begin(std::optional<Restart> restart) {

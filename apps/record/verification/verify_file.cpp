@@ -50,9 +50,10 @@ std::string line_of(const StreamVerification& stream) {
   if (rest > 0 && !stream.first) {
     line += fmt::format("; {} not verified: what they depend on is not in the file", rest);
   }
-  if (stream.lost.all() > 0) {
-    line += fmt::format("; lost while recording: {} items, {} segments, {} refusals",
-                        stream.lost.items, stream.lost.segments, stream.lost.refusals);
+  if (stream.all_lost().all() > 0) line += fmt::format("; {}", lost_in_words(stream.lost));
+  if (stream.unaccounted > 0) {
+    line +=
+        fmt::format("; {} items are neither in the file nor counted as lost", stream.unaccounted);
   }
   return line;
 }
@@ -126,11 +127,11 @@ FileVerification verify_file(const std::string& path, const std::string& stream)
 }
 
 int exit_code(const FileVerification& found) {
-  const bool falls_short = std::ranges::any_of(found.streams, [](const auto& entry) {
-    const StreamVerification& stream = entry.second;
-    return stream.first || (stream.segments > 0 && stream.equal == 0);
-  });
-  return falls_short || !has_equal(found) ? kFellShort : kOk;
+  const bool differs = std::ranges::any_of(
+      found.streams, [](const auto& entry) { return entry.second.first.has_value(); });
+  const bool is_complete = std::ranges::all_of(
+      found.streams, [](const auto& entry) { return entry.second.is_complete(); });
+  return differs ? kFellShort : is_complete && has_equal(found) ? kOk : kIncomplete;
 }
 
 std::vector<std::string> to_lines(const FileVerification& found) {
@@ -152,10 +153,11 @@ nlohmann::ordered_json to_json(const FileVerification& found) {
     json["unverified"] = stream.unverified();
     json["parts"] = stream.parts;
     json["late_commits"] = stream.late_commits;
-    json["lost"] = {{"items", stream.lost.items},
-                    {"segments", stream.lost.segments},
-                    {"refusals", stream.lost.refusals},
-                    {"others", stream.lost.others}};
+    json["items"] = stream.items;
+    json["sent"] = stream.sent;
+    json["unaccounted"] = stream.unaccounted;
+    json["lost"] = record::to_json(stream.all_lost());
+    json["reasons"] = reasons_json(stream.lost);
     streams[name] = std::move(json);
   }
   return {{"file", found.file}, {"ended_early", found.ended_early}, {"streams", streams}};

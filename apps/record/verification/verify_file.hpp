@@ -28,8 +28,8 @@ struct FileVerification {
 /// recorded streams, and if `stream` is not in it.
 [[nodiscard]] FileVerification verify_file(const std::string& path, const std::string& stream);
 
-/// kFellShort if a segment differs, if none of a stream's segments could be verified, or if the
-/// file has nothing to verify; else kOk.
+/// kFellShort if a segment differs; kIncomplete if something was lost or could not be compared, or
+/// if the file has nothing to verify; else kOk.
 [[nodiscard]] int exit_code(const FileVerification& found);
 [[nodiscard]] std::vector<std::string> to_lines(const FileVerification& found);
 [[nodiscard]] nlohmann::ordered_json to_json(const FileVerification& found);

@@ -33,6 +33,8 @@ struct EventNote {
   std::uint32_t stream = 0;
   EventKind kind{};
   bool is_old = false;  ///< it occurred before the recorder came: begins no dump
+
+  friend bool operator==(const EventNote&, const EventNote&) = default;
 };
 
 /// Records on their way from the observer to the file, in the order in which they were read.

@@ -49,7 +49,7 @@ Record BoardWatch::record(RecordKind kind, ipc::Word number, Time time, Bytes by
   return {.stream = number_,
           .kind = kind,
           .number = number,
-          .log_time = saturated_sum(time, wall_offset_),
+          .own_time = saturated_sum(time, wall_offset_),
           .bytes = std::move(bytes)};
 }
 
@@ -62,10 +62,7 @@ void BoardWatch::look(Batch& batch) {
   looked_ = reader_.look();
   settled_.look(final_until);
   // Items after the board: the record then has every item that the segments depend on.
-  if (const ipc::Word lost = ring_.look(batch); lost > 0) {
-    needs_start_ = true;
-    put_loss(batch, {.cause = LossCause::overwritten, .items = lost});
-  }
+  if (ring_.look(batch)) needs_start_ = true;
   put_refusals(batch);
   put_counts(batch);
   put_excesses(batch);
@@ -102,8 +99,7 @@ void BoardWatch::put_event(Batch& batch, EventKind kind, const std::string& memb
 }
 
 void BoardWatch::put_loss(Batch& batch, const Loss& loss) const {
-  batch.add(record(RecordKind::loss, 0, event_time(batch), encode(loss)));
-  if (loss.all() > 0) put_event(batch, EventKind::lost, members_of(loss));
+  add_loss(batch, number_, loss, event_time(batch));
 }
 
 void BoardWatch::put_refusals(Batch& batch) {
@@ -115,7 +111,7 @@ void BoardWatch::put_refusals(Batch& batch) {
     // Which items were refused before the oldest one of these is unknown.
     ring_.set_incomplete_before(count > 0 ? refused_[0].item + 1 : now.consumed);
     needs_start_ = true;
-    put_loss(batch, {.cause = LossCause::overwritten, .refusals = missed});
+    put_loss(batch, {.cause = cause(), .refusals = missed});
   }
   for (const ipc::RefusalRecord& refused : std::span(refused_).first(count)) {
     batch.add(record(RecordKind::refusal, refused.item, event_time(batch), encode(refused)));
@@ -137,8 +133,7 @@ void BoardWatch::put_counts(Batch& batch) {
   if (now.late_commits <= summary_.late_commits) return;
   // Segments that have been read may have been changed.
   needs_start_ = true;
-  batch.add(record(RecordKind::loss, 0, event_time(batch),
-                   encode(Loss{.cause = LossCause::late_commit})));
+  put_loss(batch, {.cause = LossCause::late_commit});
 }
 
 void BoardWatch::put_excesses(Batch& batch) {
@@ -187,9 +182,8 @@ void BoardWatch::put_segments(Batch& batch) {
     const ipc::Word expected = before != nullptr ? before->next : 1;
     if (segment.number != expected) {
       needs_start_ = true;
-      if (before != nullptr) {
-        put_loss(batch, {.cause = LossCause::overwritten, .segments = segment.number - expected});
-      }
+      put_loss(batch, {.cause = has_last_ ? LossCause::overwritten : LossCause::before,
+                       .segments = {.first = expected, .count = segment.number - expected}});
       before = nullptr;
     }
     if (before == nullptr && segment.number == 1 && ring_.complete_from() > 0) needs_start_ = true;
@@ -199,7 +193,9 @@ void BoardWatch::put_segments(Batch& batch) {
     if (is_start && wants_start(batch) && ring_.complete_from() <= *segment.origin.item) {
       put_restart(batch, {.before = *before, .first_item = *segment.origin.item});
     }
+    if (is_start) ring_.forget_before(*segment.origin.item);
     batch.add(record(RecordKind::segment, segment.number, segment.left, encode(segment)));
+    batch.records.back().next = std::max(segment.next, segment.number + 1);
   }
   last_ = segments.back();
   has_last_ = true;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/record/format/loss.hpp"
 #include "apps/record/format/messages.hpp"
 #include "apps/record/watch/batch.hpp"
 #include "apps/record/watch/ring_watch.hpp"
@@ -52,10 +53,13 @@ class BoardWatch {
 
   /// Writes an event, with further members as JSON: `"count":3`.
   void put_event(Batch& batch, EventKind kind, const std::string& members) const;
-  /// Writes what was lost, as a message and as an event.
-  void put_loss(Batch& batch, const Loss& loss) const;
 
  private:
+  /// Why something is lost that this look does not find.
+  [[nodiscard]] LossCause cause() const noexcept {
+    return summary_.revision == 0 ? LossCause::before : LossCause::overwritten;
+  }
+  void put_loss(Batch& batch, const Loss& loss) const;
   void put_refusals(Batch& batch);
   void put_counts(Batch& batch);
   void put_excesses(Batch& batch);

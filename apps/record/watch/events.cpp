@@ -36,7 +36,7 @@ std::string trigger_names() {
   return names;
 }
 
-void add_event(Batch& batch, const EventNote& event, Time time, Time log_time,
+void add_event(Batch& batch, const EventNote& event, Time time, Time own_time,
                const std::string& members) {
   const std::string text = fmt::format(R"({{"time_ns":{},"event":"{}"{}{}}})", time.count(),
                                        to_string(event.kind), members.empty() ? "" : ",", members);
@@ -44,14 +44,20 @@ void add_event(Batch& batch, const EventNote& event, Time time, Time log_time,
   batch.events.push_back(event);
   batch.add({.stream = event.stream,
              .kind = RecordKind::event,
-             .log_time = log_time,
+             .own_time = own_time,
              .bytes = Bytes(bytes.begin(), bytes.end())});
 }
 
-std::string members_of(const Loss& loss) {
-  return fmt::format(
-      R"("reason":"{}","count":{},"items":{},"segments":{},"refusals":{},"others":{})",
-      to_string(loss.cause), loss.all(), loss.items, loss.segments, loss.refusals, loss.others);
+void add_loss(Batch& batch, std::uint32_t stream, const Loss& loss, Time time) {
+  batch.add(
+      {.stream = stream, .kind = RecordKind::loss, .own_time = batch.now, .bytes = encode(loss)});
+  if (loss.all() == 0) return;
+  add_event(
+      batch, {.stream = stream, .kind = EventKind::lost}, time, batch.now,
+      fmt::format(R"("reason":"{}","count":{},"items":{},"segments":{},"refusals":{},"others":{},)"
+                  R"("first_item":{},"first_segment":{})",
+                  to_string(loss.cause), loss.all(), loss.items.count, loss.segments.count,
+                  loss.refusals, loss.others, loss.items.first, loss.segments.first));
 }
 
 std::string members_of(const LimitExcess& excess, const std::vector<std::string>& names) {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/record/format/messages.hpp"
+#include "apps/record/format/loss.hpp"
 #include "apps/record/watch/batch.hpp"
 #include "splinecast/status.hpp"
 
@@ -21,11 +21,13 @@ namespace splinecast::apps::record {
 [[nodiscard]] std::string trigger_names();
 
 /// Adds an event to a batch. `members`: further members of its JSON object; may be empty.
-void add_event(Batch& batch, const EventNote& event, Time time, Time log_time,
+void add_event(Batch& batch, const EventNote& event, Time time, Time own_time,
                const std::string& members);
 
+/// Adds what was lost of a stream, as a message and, if it is anything, as an event.
+void add_loss(Batch& batch, std::uint32_t stream, const Loss& loss, Time time);
+
 /// Members of the JSON object of an event.
-[[nodiscard]] std::string members_of(const Loss& loss);
 [[nodiscard]] std::string members_of(const LimitExcess& excess,
                                      const std::vector<std::string>& names);
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <utility>
 
+#include "apps/record/watch/events.hpp"
 #include "ipc/layout/table.hpp"
 #include "ipc/options/stream.hpp"
 
@@ -30,47 +31,59 @@ RingWatch::RingWatch(std::uint32_t number, ipc::CheckedRegion<ipc::RingLayout> r
     : number_(number),
       ring_(std::move(ring)),
       reader_(ring_.region.bytes(), ring_.layout),
-      wall_offset_(is_live(ipc::stream_clock(ring_.header)) ? wall_offset : Time::zero()),
-      item_(ring_.layout.dimensions),
-      next_(oldest_of(reader_)),
-      complete_from_(next_) {
+      is_live_(is_live(ipc::stream_clock(ring_.header))),
+      wall_offset_(is_live_ ? wall_offset : Time::zero()),
+      item_(ring_.layout.dimensions) {
   ring_.region.close_descriptor();
 }
 
-ipc::Word RingWatch::look(Batch& batch) {
-  ipc::Word lost = 0;
+bool RingWatch::look(Batch& batch) {
+  bool has_lost = false;
   const ipc::Word written = reader_.written();
   while (next_ < written) {
-    if (!reader_.observe(next_, item_)) {
-      const ipc::Word oldest = std::clamp(oldest_of(reader_), next_ + 1, written);
-      if (has_any_) lost += oldest - next_;
-      next_ = oldest;
-      set_incomplete_before(next_);
+    if (reader_.observe(next_, item_)) {
+      put_item(batch);
+      ++next_;
       continue;
     }
-    has_any_ = true;
-    if (item_.kind == ipc::ItemKind::waypoint) open_.push_back({next_, item_.time});
-    // The pieces of a plan are needed together, as long as its run lasts.
-    const bool is_plan = item_.kind == ipc::ItemKind::rate && item_.place == 0;
-    if (is_plan) open_.push_back({next_, Time::max()});
-    batch.add({.stream = number_,
-               .kind = RecordKind::item,
-               .number = next_,
-               .log_time = saturated_sum(item_.time, wall_offset_),
-               .bytes = encode(next_, item_)});
-    ++next_;
+    const ipc::Word oldest = std::clamp(oldest_of(reader_), next_ + 1, written);
+    add_loss(batch, number_,
+             {.cause = has_any_ ? LossCause::overwritten : LossCause::before,
+              .items = {.first = next_, .count = oldest - next_}},
+             is_live_ ? batch.now - wall_offset_ : item_.time);
+    next_ = oldest;
+    set_incomplete_before(next_);
+    has_lost = true;
   }
-  return lost;
+  return has_lost;
+}
+
+/// Writes item_, which has number next_.
+void RingWatch::put_item(Batch& batch) {
+  has_any_ = true;
+  if (item_.kind == ipc::ItemKind::waypoint) open_.push_back({next_, item_.time});
+  // The pieces of a plan are needed together, as long as its run lasts.
+  const bool is_plan = item_.kind == ipc::ItemKind::rate && item_.place == 0;
+  if (is_plan) open_.push_back({next_, Time::max()});
+  batch.add({.stream = number_,
+             .kind = RecordKind::item,
+             .number = next_,
+             .next = next_ + 1,
+             .own_time = saturated_sum(item_.time, wall_offset_),
+             .bytes = encode(next_, item_)});
 }
 
 void RingWatch::set_incomplete_before(ipc::Word item) noexcept {
   complete_from_ = std::max(complete_from_, item);
 }
 
+void RingWatch::forget_before(ipc::Word item) noexcept {
+  while (!open_.empty() && open_.front().number < item) open_.pop_front();
+}
+
 std::optional<ipc::Word> RingWatch::first_after(ipc::Word run_item, Time time) {
-  while (!open_.empty() && (open_.front().number < run_item || open_.front().time <= time)) {
-    open_.pop_front();
-  }
+  forget_before(run_item);
+  while (!open_.empty() && open_.front().time <= time) open_.pop_front();
   const ipc::Word first = open_.empty() ? next_ : open_.front().number;
   const bool is_known = complete_from_ <= run_item || first > complete_from_;
   return is_known ? std::optional(first) : std::nullopt;

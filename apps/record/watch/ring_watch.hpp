@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 
+#include "apps/record/format/loss.hpp"
 #include "apps/record/format/messages.hpp"
 #include "apps/record/watch/batch.hpp"
 #include "ipc/layout/header.hpp"
@@ -17,8 +18,8 @@ namespace splinecast::apps::record {
 /// Reads the items of a ring, as a passive observer. One thread uses it.
 class RingWatch {
  public:
-  /// Begins with the oldest item that the ring still has. `wall_offset` is added to the times of a
-  /// live stream.
+  /// Begins with the oldest item that the ring still has; those before it are lost. `wall_offset`
+  /// is added to the times of a live stream.
   RingWatch(std::uint32_t number, ipc::CheckedRegion<ipc::RingLayout> ring, Time wall_offset);
 
   [[nodiscard]] const ipc::RegionHeader& header() const noexcept { return ring_.header; }
@@ -27,11 +28,17 @@ class RingWatch {
   }
   [[nodiscard]] bool is_retired() const noexcept { return reader_.retired(); }
 
-  /// Reads the new items into the batch. Returns how many were overwritten before that.
-  [[nodiscard]] ipc::Word look(Batch& batch);
+  /// Reads the new items into the batch, and what was overwritten before that as a loss. Returns
+  /// whether there is one.
+  bool look(Batch& batch);
+
+  /// The number after the newest item that has been read.
+  [[nodiscard]] ipc::Word next() const noexcept { return next_; }
 
   /// All items from this number on are in the record, up to the newest one.
   [[nodiscard]] ipc::Word complete_from() const noexcept { return complete_from_; }
+  /// The items before this number are no longer needed: their runs have ended.
+  void forget_before(ipc::Word item) noexcept;
   /// The record lacks something about the items before this number.
   void set_incomplete_before(ipc::Word item) noexcept;
 
@@ -49,9 +56,12 @@ class RingWatch {
     Time time;
   };
 
+  void put_item(Batch& batch);
+
   std::uint32_t number_;
   ipc::CheckedRegion<ipc::RingLayout> ring_;
   ipc::WaypointRingReader reader_;
+  bool is_live_;
   Time wall_offset_;
   ipc::RingItem item_;
   ipc::Word next_ = 0;

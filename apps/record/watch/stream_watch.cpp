@@ -70,26 +70,22 @@ void StreamWatch::put_options(Batch& batch) const {
   batch.add({.stream = number_,
              .kind = RecordKind::options,
              .number = ring_->header().stream_id,
-             .log_time = batch.now,
+             .next = board_ ? 1U : 0U,
+             .own_time = batch.now,
              .bytes = std::move(bytes)});
 }
 
 bool StreamWatch::calls() const noexcept {
-  const bool has_loss = board_ && dropped_.all() > 0;  // to be written
-  return has_loss || (board_ && board_->calls()) || (ring_ && ring_->calls());
+  return (board_ && board_->calls()) || (ring_ && ring_->calls());
 }
 
 void StreamWatch::look(Batch& batch) {
   if (!ring_) return;
   const bool is_retired = ring_->is_retired() || (board_ && board_->is_retired());
-  if (dropped_.all() > 0 && board_) {
-    board_->put_loss(batch, std::exchange(dropped_, {}));
-    board_->begin_again();
-  }
   if (board_) {
     board_->look(batch);
   } else {
-    note_dropped({.cause = LossCause::overwritten, .items = ring_->look(batch)});
+    ring_->look(batch);
   }
   if (is_retired) detach(batch, ring_->is_retired() ? "producer" : "solver");
 }
@@ -103,11 +99,6 @@ void StreamWatch::look_at_owners(Batch& batch) {
   };
   if (ring_) compare(ring_->owner(), owners_.ring, "producer");
   if (board_) compare(board_->owner(), owners_.board, "solver");
-}
-
-void StreamWatch::note_dropped(const Loss& dropped) noexcept {
-  dropped_.cause = dropped.cause;
-  dropped_ += dropped;
 }
 
 /// Detaches from a stream, or from its board only if the ring stays.

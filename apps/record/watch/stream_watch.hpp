@@ -52,8 +52,11 @@ class StreamWatch {
   /// Looks whether a process has taken over a region: some loads.
   void look_at_owners(Batch& batch);
 
-  /// Notes that records of this stream in a batch were dropped: verification has to begin again.
-  void note_dropped(const Loss& dropped) noexcept;
+  /// What has been read until now may be in no file: verification has to begin again.
+  void begin_again() noexcept {
+    if (ring_) ring_->set_incomplete_before(ring_->next());
+    if (board_) board_->begin_again();
+  }
 
  private:
   void attach_ring(Batch& batch);
@@ -73,7 +76,6 @@ class StreamWatch {
   std::unique_ptr<RingWatch> ring_;
   std::unique_ptr<BoardWatch> board_;
   bool was_finished_ = false;  ///< of the stream from which it has detached
-  Loss dropped_{};
 };
 
 }  // namespace splinecast::apps::record

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <span>
 #include <utility>
 
 #include "ipc/memory/names.hpp"
@@ -15,6 +14,8 @@ namespace {
 /// Interval of looks for files that come or go, and for processes that take over.
 constexpr Time kLookAround = std::chrono::milliseconds(20);
 constexpr Time kLookAtOwners = std::chrono::milliseconds(100);
+/// A name that is gone is forgotten after this time.
+constexpr Time kForget = std::chrono::seconds(2);
 /// A sweep that reads more records of one stream than this is followed by another one at once.
 constexpr std::size_t kMany = 128;
 
@@ -33,18 +34,23 @@ Watcher::Watcher(const std::vector<std::string>& wanted, const Trust& trust, Not
 }
 
 Watcher::Member& Watcher::add(const std::string& stream, bool is_named) {
-  const auto number = static_cast<std::uint32_t>(members_.size());
   members_.push_back(std::make_unique<Member>(
-      Member{.watch = StreamWatch(number, stream, trust_, clock_.offset()), .is_named = is_named}));
+      Member{.number = ++last_number_,
+             .watch = StreamWatch(last_number_, stream, trust_, clock_.offset()),
+             .is_named = is_named}));
   by_name_.emplace(stream, members_.back().get());
   return *members_.back();
 }
 
-void Watcher::sweep(Batch& batch) {
+void Watcher::sweep(Batch& batch, bool may_attach) {
   batch.now = clock_.now();
-  if (batch.now >= next_look_) {
+  if (batch.now >= next_look_ && may_attach) {
     next_look_ = batch.now + kLookAround;
     look_around(batch);
+  }
+  if (batch.now >= next_forget_) {
+    next_forget_ = batch.now + kForget;
+    forget_gone(batch.now);
   }
   schedule_.begin(batch.now);
   is_late_ = false;
@@ -74,20 +80,31 @@ void Watcher::look_around(Batch& batch) {
   // A ring or a board can appear only with a new file.
   if (!folder_.has_changed() && !has_detached_) return;
   has_detached_ = false;
-  find_streams();
+  find_streams(batch.now);
   const bool were_there = !std::exchange(has_looked_around_, true);
   for (const auto& member : members_) {
     attach(batch, *member, were_there);
   }
 }
 
-void Watcher::find_streams() {
+/// Forgets streams that match a pattern and are gone, so that the work does not grow with the names
+/// that there have ever been.
+void Watcher::forget_gone(Time now) {
+  std::erase_if(members_, [&](const auto& member) {
+    const bool is_gone = !member->is_named && !member->is_refused && !member->watch.is_attached() &&
+                         member->active <= now - kForget;
+    if (is_gone) by_name_.erase(member->watch.stream());
+    return is_gone;
+  });
+}
+
+void Watcher::find_streams(Time now) {
   if (patterns_.empty()) return;
   for (const std::string& stream : stream_names()) {
     if (by_name_.contains(stream)) continue;
     const bool is_wanted = std::ranges::any_of(
         patterns_, [&](const std::string& pattern) { return ipc::matches(pattern, stream); });
-    if (is_wanted) add(stream, false);
+    if (is_wanted) add(stream, false).active = now;
   }
 }
 
@@ -114,13 +131,11 @@ void Watcher::finish(Batch& batch) {
   }
 }
 
-void Watcher::note_dropped(const Batch& batch) {
+void Watcher::note_dropped(const Batch& batch) noexcept {
   for (const Record& record : batch.records) {
-    Loss one{.cause = LossCause::queue};
-    one.count(record.kind);
-    // What a dropped message has counted would be lost with it.
-    if (record.kind == RecordKind::loss) one += decode_loss(std::span(record.bytes).subspan(1));
-    members_[record.stream]->watch.note_dropped(one);
+    const auto found = std::ranges::lower_bound(members_, record.stream, {}, &number_of);
+    if (found != members_.end() && number_of(*found) == record.stream)
+      (*found)->watch.begin_again();
   }
 }
 

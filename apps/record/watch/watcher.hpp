@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -30,7 +31,8 @@ class Watcher {
   Watcher(const std::vector<std::string>& wanted, const Trust& trust, Notify notify);
 
   /// Looks at every stream that is due. Writes what is new into the batch, and sets its time.
-  void sweep(Batch& batch);
+  /// `may_attach`: whether it looks for further streams, too.
+  void sweep(Batch& batch, bool may_attach);
 
   /// Time to wait before the next sweep: 0 while some stream has much to read.
   [[nodiscard]] Time next_pause() const noexcept;
@@ -38,8 +40,8 @@ class Watcher {
   /// Reads what is left, and the last summaries.
   void finish(Batch& batch);
 
-  /// The records of a batch were dropped. Counts them by stream.
-  void note_dropped(const Batch& batch);
+  /// The records of a batch were dropped.
+  void note_dropped(const Batch& batch) noexcept;
 
   /// Number of streams that are attached.
   [[nodiscard]] std::size_t attached() const noexcept;
@@ -51,6 +53,7 @@ class Watcher {
 
  private:
   struct Member {
+    std::uint32_t number;
     StreamWatch watch;
     bool is_named = false;
     bool is_refused = false;  ///< it cannot be recorded; tried again when files come or go
@@ -58,8 +61,13 @@ class Watcher {
     Time next_owners = Time::min();
   };
 
+  /// Of a member.
+  [[nodiscard]] static std::uint32_t number_of(const std::unique_ptr<Member>& member) noexcept {
+    return member->number;
+  }
   void look_around(Batch& batch);
-  void find_streams();
+  void find_streams(Time now);
+  void forget_gone(Time now);
   void attach(Batch& batch, Member& member, bool was_there);
   Member& add(const std::string& stream, bool is_named);
 
@@ -68,9 +76,11 @@ class Watcher {
   Notify notify_;
   WallClock clock_;
   ipc::FolderWatch folder_;
-  std::vector<std::unique_ptr<Member>> members_;
+  std::vector<std::unique_ptr<Member>> members_;  ///< by number
+  std::uint32_t last_number_ = 0;
   std::map<std::string, Member*, std::less<>> by_name_;
   Time next_look_ = Time::min();
+  Time next_forget_{};
   ipc::PollSchedule schedule_;
   bool has_looked_around_ = false;
   bool is_late_ = false;

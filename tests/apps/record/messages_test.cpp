@@ -87,7 +87,7 @@ std::vector<Example> examples() {
       {encode(a_segment()), [=](auto m) { return encode(decode_segment(body(m), kDimensions)); }},
       {encode(a_restart()), [=](auto m) { return encode(decode_restart(body(m), kDimensions)); }},
       {encode(summary), [=](auto m) { return encode(decode_summary(body(m))); }},
-      {encode(Loss{.cause = LossCause::file, .items = 1, .others = 2}),
+      {encode(Loss{.cause = LossCause::file, .items = {.first = 7, .count = 1}, .others = 2}),
        [=](auto m) { return encode(decode_loss(body(m))); }}};
 }
 

@@ -1,0 +1,167 @@
+#include "apps/record/output/accounts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
+
+#include "ipc/memory/names.hpp"
+
+namespace splinecast::apps::record {
+namespace {
+
+/// Counts numbers that have been read. Returns how many of them were counted before.
+bool count(Account::Numbers& numbers, LossCounts& missed, ipc::Word LossCounts::*member,
+           const NumberSpan& read) noexcept {
+  const NumberSpan rest = read.from(numbers.end);
+  if (rest.count == 0) return false;
+  missed.*member += rest.first - numbers.end;  // each loss is in the record: there is none here
+  numbers.recorded += rest.count;
+  numbers.end = rest.end();
+  return true;
+}
+
+void count_lost(Account::Numbers& numbers, ipc::Word& lost, const NumberSpan& range) noexcept {
+  const NumberSpan rest = range.from(numbers.end);
+  if (rest.count == 0) return;
+  lost += rest.count;
+  numbers.end = rest.end();
+}
+
+NumberSpan range_of(const Record& record) noexcept {
+  return {.first = record.number, .count = record.next - record.number};
+}
+
+/// A segment's numbers begin with 1.
+NumberSpan moved(NumberSpan range, ipc::Word before) noexcept {
+  if (range.count > 0) range.first += before - 1;
+  return range;
+}
+
+std::string name_in(const Record& options) {
+  const auto text = std::span(options.bytes).subspan(1);
+  const std::string_view whole(reinterpret_cast<const char*>(text.data()), text.size());  // NOLINT
+  return nlohmann::json::parse(whole).value("stream", "");
+}
+
+LossCounts& of(Account& account, LossCause cause) {
+  return account.lost.at(static_cast<std::size_t>(cause));
+}
+
+}  // namespace
+
+void Accounts::begin(Stream& stream, const Record& options) {
+  if (stream.id != options.number) {
+    if (stream.id != 0) retire(stream);
+    stream = {.name = name_in(options), .id = options.number};
+  }
+  const bool has_solver = options.next != 0;
+  if (has_solver && stream.has_solver) stream.segments_before = stream.account.segments.end;
+  stream.has_solver = stream.has_solver || has_solver;
+  stream.has_ended = false;
+}
+
+void Accounts::add(Record& record) {
+  Stream& stream = streams_[record.stream];
+  Account& account = stream.account;
+  stream.newest = record.seen;
+  LossCounts& missed = of(account, LossCause::overwritten);
+  switch (record.kind) {
+    case RecordKind::options:
+      return begin(stream, record);
+    case RecordKind::item:
+      record.is_counted = count(account.items, missed, &LossCounts::items, range_of(record));
+      break;
+    case RecordKind::segment:
+      record.is_counted = count(account.segments, missed, &LossCounts::segments,
+                                moved(range_of(record), stream.segments_before));
+      break;
+    case RecordKind::loss: {
+      const Loss loss = decode_loss(std::span(record.bytes).subspan(1));
+      LossCounts& lost = of(account, loss.cause);
+      count_lost(account.items, lost.items, loss.items);
+      count_lost(account.segments, lost.segments, moved(loss.segments, stream.segments_before));
+      lost.refusals += loss.refusals;
+      lost.others += loss.others;
+      break;
+    }
+    default:
+      record.is_counted = true;
+  }
+  stream.is_changed = true;
+}
+
+void Accounts::forget(const Record& record, ipc::Word stream_id, bool was_wanted) {
+  if (!record.is_counted) return;
+  const auto found = streams_.find(record.stream);
+  const bool is_there =
+      found != streams_.end() && (stream_id == 0 || found->second.id == stream_id);
+  Account& account = is_there ? found->second.account : ended_;
+  LossCounts& lost = of(account, LossCause::file);
+  const ipc::Word count = record.next - record.number;
+  if (record.kind == RecordKind::item || record.kind == RecordKind::segment) {
+    const bool is_item = record.kind == RecordKind::item;
+    Account::Numbers& numbers = is_item ? account.items : account.segments;
+    numbers.recorded -= count;
+    if (!was_wanted) numbers.unwritten += count;
+    if (was_wanted) (is_item ? lost.items : lost.segments) += count;
+  } else if (was_wanted) {
+    ++(record.kind == RecordKind::refusal ? lost.refusals : lost.others);
+  }
+  if (is_there) found->second.is_changed = true;
+}
+
+void Accounts::end(std::uint32_t stream) noexcept {
+  const auto found = streams_.find(stream);
+  if (found != streams_.end()) found->second.has_ended = true;
+}
+
+void Accounts::tidy(Time oldest) {
+  std::erase_if(streams_, [&](const auto& entry) {
+    const bool is_old = entry.second.has_ended && entry.second.newest < oldest;
+    if (is_old) retire(entry.second);
+    return is_old;
+  });
+}
+
+void Accounts::retire(const Stream& stream) {
+  ended_ += stream.account;
+  if (stream.account.all_lost().all() == 0 || ended_losses_.size() >= kMostNamed) return;
+  ended_losses_.push_back(
+      fmt::format("'{}': {}", ipc::printable(stream.name), lost_in_words(stream.account.lost)));
+}
+
+const Account* Accounts::changed(std::uint32_t stream, bool is_needed) {
+  const auto found = streams_.find(stream);
+  if (found == streams_.end() || !(found->second.is_changed || is_needed)) return nullptr;
+  found->second.is_changed = false;
+  return &found->second.account;
+}
+
+std::vector<std::uint32_t> Accounts::all_changed() const {
+  std::vector<std::uint32_t> numbers;
+  for (const auto& [number, stream] : streams_) {
+    if (stream.is_changed) numbers.push_back(number);
+  }
+  return numbers;
+}
+
+Account Accounts::total() const {
+  Account sum = ended_;
+  for (const auto& [number, stream] : streams_) sum += stream.account;
+  return sum;
+}
+
+std::vector<std::string> Accounts::losses() const {
+  std::vector<std::string> lines = ended_losses_;
+  for (const auto& [number, stream] : streams_) {
+    if (stream.account.all_lost().all() == 0 || lines.size() >= kMostNamed) continue;
+    lines.push_back(
+        fmt::format("'{}': {}", ipc::printable(stream.name), lost_in_words(stream.account.lost)));
+  }
+  return lines;
+}
+
+}  // namespace splinecast::apps::record
