@@ -179,7 +179,7 @@ class KnotBoardReader {
   }
 
   /// Copies the right side of the row of a copied knot into `g`, and returns the row's scalars.
-  /// Only the writer calls it, so that no other process writes concurrently.
+  /// For the writer, so that no other process writes concurrently; others call observe_row().
   [[nodiscard]] core::Prefix copy_row(const KnotCopy& knot, std::span<double> g) const noexcept;
 
   /// Copies the row of a knot that was copied under revision r, for an observer. Returns false if

@@ -13,6 +13,19 @@ constexpr unsigned kRefusalItemShift = 8;
 constexpr Word kByteMask = 0xff;
 /// The last byte of a refusal as `stopped`, plus the stopper's slot.
 constexpr Word kStoppedBySlot = 128;
+/// The word of a lost refusal: its item number is above that of every item, so that readers stop
+/// there. 0 would be a refusal of item 0.
+constexpr Word kLostRefusal = ~Word{0};
+
+/// Whether a record of `item`, in the place of excess `index` that `summary` counts, belongs to a
+/// revision after that summary. Such a revision consumes the items of its excesses. Only the excess
+/// of a stop may be of the last item that the summary has consumed. A later record is in the place
+/// of one of the oldest excesses that the summary counts, an earlier one of that item in the place
+/// of one of the newest: an item has only a few records.
+bool is_later_excess(Word item, const Summary& summary, Word index) noexcept {
+  const bool is_old_place = summary.exceeding - index > kExcessesKept / 2;
+  return item + (is_old_place ? 1 : 0) >= summary.consumed;
+}
 
 /// Stores an excess. Word 0 comes last, and is 0 meanwhile.
 void put_excess(const LimitExcess& excess, std::span<Word> words) noexcept {
@@ -61,6 +74,28 @@ void KnotBoardWriter::write_worst_excess(const LimitExcess& excess) noexcept {
   put_excess(excess, worst_);
 }
 
+/// Clears the lost records. They are in the places of the oldest records that the summary counts,
+/// in their order; a writer that died here has cleared the first of them. The other places belong
+/// to numbers that are written before a summary counts them.
+void KnotBoardWriter::clear_lost_records() noexcept {
+  const Summary summary = committed_summary();
+  const Word refused = summary.refused;
+  for (Word i = refused - std::min<Word>(refused, kRefusalsKept); i < refused; ++i) {
+    Word& word = refusals_[i % kRefusalsKept];
+    const Word found = load(word, std::memory_order_relaxed);
+    if (found >> kRefusalItemShift < summary.consumed) break;  // committed, and so are newer ones
+    if (found != kLostRefusal) put(word, kLostRefusal);
+  }
+  const Word exceeding = summary.exceeding;
+  for (Word i = exceeding - std::min<Word>(exceeding, kExcessesKept); i < exceeding; ++i) {
+    Word& head = excesses_[i % kExcessesKept * kExcessWords];
+    const Word found = load(head, std::memory_order_relaxed);
+    if (found == 0) continue;  // cleared, or not completed
+    if (!is_later_excess(found >> kExcessItemShift, summary, i)) break;
+    put(head, 0);
+  }
+}
+
 RefusalRecord KnotBoardReader::refusal(Word index) const noexcept {
   const Word word = load(refusals_[index % kRefusalsKept], std::memory_order_acquire);
   const Word item = word >> kRefusalItemShift;
@@ -92,7 +127,7 @@ std::optional<LimitExcess> KnotBoardReader::excess(const Summary& summary,
   if (index >= summary.exceeding || summary.exceeding - index > kExcessesKept) return std::nullopt;
   const auto words = excesses_.subspan(index % kExcessesKept * kExcessWords, kExcessWords);
   const auto found = copy_excess(words);
-  return found && found->item < summary.consumed ? found : std::nullopt;
+  return found && !is_later_excess(found->item, summary, index) ? found : std::nullopt;
 }
 
 std::optional<LimitExcess> KnotBoardReader::worst_excess() const noexcept {

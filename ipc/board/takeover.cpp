@@ -34,6 +34,7 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
   retire_uncommitted(summary_cells(), revision_);
   for (std::size_t i = 0; i < states_.size(); ++i) retire_uncommitted(cells_at(i), revision_);
   read_state();
+  clear_lost_records();
   restore_times();
   // A new board: no time has settled. Times may be negative, so that 0 would be a promise.
   if (revision_ == 0 && settled_ == 0) store_settled(-kLatestTime);
@@ -56,11 +57,16 @@ void KnotBoardWriter::read_state() noexcept {
   }
 }
 
+Summary KnotBoardWriter::committed_summary() const noexcept {
+  Summary summary;
+  decode(kSummaryRows, summary_[summary_cell_].data(), summary);
+  return summary;
+}
+
 /// Restores packed times that an earlier writer stored for a revision that it did not commit: they
 /// would mislead lookups as long as those knots are on the board.
 void KnotBoardWriter::restore_times() noexcept {
-  Summary summary;
-  decode(kSummaryRows, summary_[summary_cell_].data(), summary);
+  const Summary summary = committed_summary();
   if (summary.newest == 0 || summary.newest - summary.first >= layout_.capacity) return;
   Word begins = 0;
   for (Word number = summary.newest; number >= summary.first && number > 0; --number) {
@@ -84,6 +90,7 @@ void KnotBoardWriter::discard() noexcept {
     retire_uncommitted(cells_at(slot.index), revision_);
     states_[slot.index] &= ~kWrittenBit;
   }
+  clear_lost_records();
   // In reverse order: if a time was stored twice, its first record has the committed value.
   for (std::size_t i = held_times_.size(); i-- > 0;) {
     store(times_[held_times_[i].index], held_times_[i].time, std::memory_order_relaxed);

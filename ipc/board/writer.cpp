@@ -122,8 +122,9 @@ inline void KnotBoardWriter::write_slot(std::size_t index, const KnotRecord& kno
   }
   written_sum_ += sum;
   if (!has_row) return;
-  // Only writers read the row. The owner's lock, which passes from one writer to the next, orders
-  // their accesses.
+  // This writer and its successors read the row: the lock that passes from one to the next orders
+  // their accesses. Observers copy it too, and then check the tags: each word is stored with
+  // release, after W1 of this revision, as a word of a node.
   Word* const row =
       claimed.slot + (layout_.rows + row_of(claimed.next) * layout_.row) / sizeof(Word);
   put(row[kRowGamma], to_word(knot.prefix->gamma));

@@ -56,7 +56,18 @@
 ///   excess of a later revision may overwrite the oldest one. The writer stores the first word as
 ///   0, then the other words, then the first word's value, each with release. A reader loads the
 ///   first word, the others (acquire), and the first word again (relaxed). If it is the same and
-///   not 0, the reader has copied one whole record, because no item has two records.
+///   not 0, the reader has copied one whole record. It accepts the record if the summary has
+///   consumed its item: a record that overwrites one that the summary counts has a later item, or
+///   is recognised by its place (is_later_excess). So a first word that the reader accepts is not
+///   stored twice in that place.
+/// - Lost refusals and excesses, of a revision that was not committed: a takeover and a discard
+///   clear them (L1), before the writer stores anything for another revision. A later revision may
+///   consume their items without a refusal or an excess: then no number would distinguish them from
+///   committed ones [s]. Cleared, the item number of a refusal is above all others, and the first
+///   word of an excess is 0: readers reject both. No reader accepts a lost record: under a summary
+///   committed before L1 its item is not consumed; a reader that sees a summary committed after L1
+///   sees L1 too, by W3 and R1, or a later store to that word. L1 is a release like all stores of
+///   records; relaxed would be enough, because W3 comes after it.
 /// - Outcomes: as excesses, two words each, with the low byte of the index / kOutcomesKept in the
 ///   first word: a record of another index is not taken for it, unless 65,536 were written during
 ///   the reader's call. Before a record overwrites one, `outcomes lost` is raised above its item,
@@ -73,7 +84,8 @@ namespace splinecast::ipc {
 class KnotBoardWriter {
  public:
   /// `region` holds a board of this layout and outlives the writer. Retires everything that an
-  /// earlier writer had not committed (T1), and restores the packed times of the committed knots.
+  /// earlier writer had not committed (T1), clears its refusals and excesses (L1), and restores the
+  /// packed times of the committed knots.
   KnotBoardWriter(std::span<std::byte> region, const BoardLayout& layout);
   KnotBoardWriter(const KnotBoardWriter&) = delete;
   KnotBoardWriter& operator=(const KnotBoardWriter&) = delete;
@@ -118,7 +130,7 @@ class KnotBoardWriter {
     return written_sum_ <= kLargestSum && std::isfinite(row_sum_);
   }
 
-  /// Discards what has been written for the next revision, as a takeover does (T1).
+  /// Discards what has been written for the next revision, as a takeover does (T1, L1).
   void discard() noexcept;
 
   /// Writes a refusal for the next revision: the `index`-th of the stream, counted from 0.
@@ -283,6 +295,8 @@ class KnotBoardWriter {
   }
   void note_time(Word number, Time time) noexcept;
   void read_state() noexcept;
+  [[nodiscard]] Summary committed_summary() const noexcept;
+  void clear_lost_records() noexcept;
   void restore_times() noexcept;
   void forget_written() noexcept {
     at_.written_count = 0;

@@ -19,9 +19,10 @@ RegionHeader copy_header(std::span<const std::byte> region) {
     throw BadRegion("region has " + std::to_string(region.size()) +
                     " bytes, fewer than its first " + std::to_string(kBodyOffset));
   }
+  static_assert(kEpoch < kOwnerPid && kEpoch < kOwnerSince);  // loaded first
   std::array<Word, kHeaderWords> copy{};
   const auto words = words_at(region, 0, kHeaderWords);
-  for (std::size_t i = 0; i < copy.size(); ++i) copy[i] = load(words[i], std::memory_order_relaxed);
+  for (std::size_t i = 0; i < copy.size(); ++i) copy[i] = load(words[i], std::memory_order_acquire);
   return decode_header(copy);
 }
 

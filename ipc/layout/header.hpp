@@ -208,6 +208,9 @@ inline constexpr std::tuple kHeaderRows{
         "1 in old recordings only"}};
 inline constexpr auto kHeaderFields = place(kHeaderRows);
 inline constexpr std::size_t kHeaderWords = size_of(kHeaderFields).words;
+inline constexpr std::size_t kEpoch = word_of(kHeaderFields, "epoch");
+inline constexpr std::size_t kOwnerPid = word_of(kHeaderFields, "process id");
+inline constexpr std::size_t kOwnerSince = word_of(kHeaderFields, "since");
 
 /// The largest rate of a law, or of the law that the stream follows.
 [[nodiscard]] inline double max_rate(const RegionHeader& header) noexcept {
@@ -218,9 +221,10 @@ inline constexpr std::size_t kHeaderWords = size_of(kHeaderFields).words;
 [[nodiscard]] bool smooths(const RegionHeader& header) noexcept;
 
 /// Copies a header out of a region, word by word, so that a process uses the values that it has
-/// checked even if the region changes. The loads are relaxed: the header was written before the
-/// region got its name, and the kernel orders the look-up of the name after that. Throws BadRegion
-/// if the region is too short to hold one.
+/// checked even if the region changes. The loads are acquire, in the order of the words: the epoch
+/// before the other words of the owner, see enter_owner(). For the words of the maker, relaxed
+/// would be enough: they were written before the region got its name, and the kernel orders the
+/// look-up of the name after that. Throws BadRegion if the region is too short to hold one.
 [[nodiscard]] RegionHeader copy_header(std::span<const std::byte> region);
 
 /// Decodes a header from words that have already been copied: at least kHeaderWords.

@@ -45,10 +45,13 @@
 /// T1 Takeover: before its first other store, the successor overwrites every tag above the commit
 ///    word with kRetiredTag (release). A writer that discards its own revision does the same. Else
 ///    a half-written cell becomes the newest when the commit word reaches its tag; this fails where
-///    the successor does not write that slot [s]. Retiring with 0 fails [s]: 0 is not above the
-///    revision, and a reader whose newest cell is being overwritten takes the retired one as older
-///    history. Release for the same reason as W1: a reader that finds the retired tag takes the
-///    other cell, and must then see at R4 whether that cell was overwritten before [m].
+///    the successor does not write that slot [s].
+///    The retired tag is above each revision. 0 is not: C3 would count two retired tags as old ones
+///    (fails [s]). A reader that takes 0 as the tag of older history fails, too, where its newest
+///    cell is being overwritten [s]. But copies of slots reject tag 0, as of a cell that was never
+///    written: for slots alone 0 would do.
+///    Release for the same reason as W1: a reader that finds the retired tag takes the other cell,
+///    and must then see at R4 whether that cell was overwritten before [m].
 ///    A retired tag names no node: the writer takes the node bit from the newest *committed* cell
 ///    only [s].
 ///

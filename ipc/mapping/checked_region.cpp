@@ -12,8 +12,9 @@
 namespace splinecast::ipc {
 namespace {
 
-void store_header_word(std::span<std::byte> region, std::size_t word, Word value) noexcept {
-  store(words_at(region, word * sizeof(Word), 1)[0], value, std::memory_order_relaxed);
+void store_header_word(std::span<std::byte> region, std::size_t word, Word value,
+                       std::memory_order order) noexcept {
+  store(words_at(region, word * sizeof(Word), 1)[0], value, order);
 }
 
 template <typename Layout>
@@ -63,9 +64,11 @@ void require_same_clock(const RegionHeader& header, const std::string& stream) {
 }
 
 void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept {
-  store_header_word(region, word_of(kHeaderFields, "process id"), static_cast<Word>(getpid()));
-  store_header_word(region, word_of(kHeaderFields, "since"), to_word(MonotonicClock().now()));
-  store_header_word(region, word_of(kHeaderFields, "epoch"), before.epoch + 1);
+  const auto pid = static_cast<Word>(getpid());
+  const Word since = to_word(MonotonicClock().now());
+  store_header_word(region, kOwnerPid, pid, std::memory_order_relaxed);
+  store_header_word(region, kOwnerSince, since, std::memory_order_relaxed);
+  store_header_word(region, kEpoch, before.epoch + 1, std::memory_order_release);
 }
 
 }  // namespace splinecast::ipc

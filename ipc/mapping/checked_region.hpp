@@ -57,8 +57,11 @@ struct RegionView {
 void require_same_clock(const RegionHeader& header, const std::string& stream);
 
 /// Writes this process as the owner into the header: process id, time, and the epoch of `before`
-/// plus 1. The stores are relaxed, like the loads of copy_header: no other data depends on the
-/// three words, and a concurrent copy may mix the words of two owners.
+/// plus 1. The epoch is stored last, with release. copy_header(), and a recorder, load it first,
+/// with acquire: a process that finds an epoch finds the process id and the time of that owner or
+/// of a later one. With relaxed, a recorder could write the process id of a dead owner beside the
+/// epoch of its successor, though not on x86. The reverse remains possible: an epoch, and the
+/// process id of the next owner, which has not stored its own epoch yet.
 void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept;
 
 }  // namespace splinecast::ipc

@@ -38,8 +38,11 @@
 /// S1 written.load(acquire). Pairs with P2.
 /// S2 word.load(acquire), each. Relaxed would be enough, because S1 has ordered it and no process
 ///    overwrites the item before S3. It is acquire because S2 and O1 share one function.
-/// S3 consumed.store(release), when the items have been read. Pairs with P3: the loads of S2 come
-///    before the stores of the P1 that overwrite them. With relaxed, S2 could see those stores.
+/// S3 consumed.store(release), when the items have been read. Pairs with P3: for any order of P1
+///    and S2, the loads of S2 come before the stores of the P1 that overwrite them. With S3 and S2
+///    relaxed, S2 could see those stores. With P1 release and S2 acquire, S3 and P3 could be
+///    relaxed: an S2 that sees a store of P1 comes after the P3 before that P1, so that this P3
+///    cannot have loaded the S3 after that S2.
 /// P3 consumed.load(acquire), before P1. Pairs with S3.
 /// O1 word.load(acquire), each: see P1. Keeps O2 after it.
 /// O2 written.load and claimed.load (relaxed), after the copy: item i may be kept iff

@@ -52,8 +52,8 @@ def attack_model():
     write("model", {
         "promise": [1, 3, 5, 8],
         "attack": "models: all interleavings, with spin, of models of the publication of knots, the ring of changes, "
-                  "the settled word, also where a hold lowers it, the takeover of the waypoint ring and the record of "
-                  "a commander, with writers that die at any store",
+                  "the settled word, also where a hold lowers it, the refusals and excesses of a lost revision, the "
+                  "takeover of the waypoint ring and the record of a commander, with writers that die at any store",
         "count": sum(map(sum, held.values())),
         "unit": "states",
         "found": {"states that break a promise": 0, "mutants not caught": 0},

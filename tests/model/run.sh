@@ -67,6 +67,17 @@ holds waypoint_ring "$@"
 for mutant in HEAD_FIRST TAIL_FIRST OBSERVER_LE NO_CLAIM NO_SECOND_LOOK NO_WAKE; do
   fails waypoint_ring "$mutant" "$@"
 done
+# Refusals and excesses of a lost revision.
+holds lost_records "$@"
+holds lost_records -DREFUSALS "$@"
+holds lost_records -DSTOPS -DLIVES=2
+for mutant in NO_CLEAR CLEAR_LATE CLEAR_FIRST_ONLY STOP_AT_CLEARED NO_ZERO NO_RECHECK; do
+  fails lost_records "$mutant" "$@"
+done
+for mutant in NO_CLEAR CLEAR_WITH_ZERO; do
+  fails lost_records "$mutant" -DREFUSALS "$@"
+done
+fails lost_records ITEM_ALONE -DSTOPS -DLIVES=2
 holds commander_record "$@"
 for mutant in BEFORE_ONLY AFTER_ONLY TAKE_ODD ODD_OF_DEAD NO_SECOND_LOAD; do
   fails commander_record "$mutant" "$@"

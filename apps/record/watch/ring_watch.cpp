@@ -21,9 +21,9 @@ ipc::Word oldest_of(const ipc::WaypointRingReader& ring) noexcept {
 
 std::pair<ipc::Word, ipc::Word> owner_of(std::span<const std::byte> region) noexcept {
   const auto words = ipc::words_at(region, 0, ipc::kHeaderWords);
-  const auto at = [&](std::size_t i) { return ipc::load(words[i], std::memory_order_relaxed); };
-  return {at(ipc::word_of(ipc::kHeaderFields, "epoch")),
-          at(ipc::word_of(ipc::kHeaderFields, "process id"))};
+  // In this order: see enter_owner().
+  const ipc::Word epoch = ipc::load(words[ipc::kEpoch], std::memory_order_acquire);
+  return {epoch, ipc::load(words[ipc::kOwnerPid], std::memory_order_relaxed)};
 }
 
 RingWatch::RingWatch(std::uint32_t number, ipc::CheckedRegion<ipc::RingLayout> ring,

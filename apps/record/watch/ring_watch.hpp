@@ -70,7 +70,7 @@ class RingWatch {
   std::deque<OpenItem> open_;  ///< waypoints that may not have settled
 };
 
-/// The epoch and the process id of a region's present owner.
+/// The epoch of a region's owner, and the process id of that owner or of a later one.
 [[nodiscard]] std::pair<ipc::Word, ipc::Word> owner_of(std::span<const std::byte> region) noexcept;
 
 }  // namespace splinecast::apps::record
