@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "splinecast/state.hpp"
 #include "splinecast/time.hpp"
 
 namespace [[gnu::visibility("default")]] splinecast {
@@ -24,21 +25,22 @@ static_assert(kLatestTime - -kLatestTime > Time::zero());
   return time >= -kLatestTime && time <= kLatestTime;
 }
 
-/// The input from a producer: a time, a position and, optionally, velocity and acceleration. Spans
-/// hold one value per dimension; an empty span means "not given". Does not own its values.
+/// The input from a producer: a time, a position and, optionally, velocity and acceleration. Views
+/// hold one value per dimension; an empty one means "not given". Does not own its values, which may
+/// be a std::vector, std::array, std::span or an Eigen vector: `{.time = t, .position = x}`.
 struct Waypoint {
   Time time{};
-  std::span<const double> position{};
-  std::span<const double> velocity{};
-  std::span<const double> acceleration{};
+  VectorView position{};
+  VectorView velocity{};
+  VectorView acceleration{};
 };
 
-/// A state at an instant. Spans hold one value per dimension; does not own them.
+/// A state at an instant. Views hold one value per dimension; does not own them.
 struct Instant {
   Time time{};
-  std::span<const double> position{};
-  std::span<const double> velocity{};
-  std::span<const double> acceleration{};
+  VectorView position{};
+  VectorView velocity{};
+  VectorView acceleration{};
 };
 
 /// Waypoints of a whole recording: values are [waypoint][dimension]; `velocities` and
