@@ -30,16 +30,28 @@ concept EigenExpression = requires {
 /// column-major matrix, a sum and a product are not.
 template <class T>
 concept EigenMemory = EigenExpression<T> && static_cast<int>(T::InnerStrideAtCompileTime) == 1 &&
-    requires(const T& values) {
+                      requires(const T& values) {
   { values.data() } -> std::convertible_to<const double*>;
 };
 
 /// An Eigen vector that can be made of values in memory: a Matrix, a Map, or a Ref to const.
 template <class T>
-concept EigenVectorOfMemory = EigenExpression<T> && static_cast<bool>(T::IsVectorAtCompileTime) &&
-    std::same_as<typename T::Scalar, double> && requires(const double* data, std::ptrdiff_t size) {
+concept EigenVectorOfMemory =
+    EigenExpression<T> && static_cast<bool>(T::IsVectorAtCompileTime) &&
+    std::same_as<typename T::Scalar, double>&& requires(const double* data, std::ptrdiff_t size) {
   T(T::PlainObject::Map(data, size));
 };
+
+namespace core {
+
+template <class T>
+inline constexpr bool kNever = false;
+
+/// Whether an Eigen type has its own memory, which a temporary of this type frees.
+template <class T>
+inline constexpr bool kOwnsValues = std::is_base_of_v<typename T::PlainObject, T>;
+
+}  // namespace core
 
 /// A view of the values of one derivative, one per dimension: a std::span, made also of an Eigen
 /// vector in memory, and assigned to one: `Eigen::VectorXd x = state.position()`. Needs no Eigen.
@@ -73,8 +85,7 @@ class VectorView : public std::span<const double> {
  private:
   template <class Vector, class Plain = std::remove_cvref_t<Vector>>
   static std::span<const double> view(const Plain& vector) noexcept {
-    constexpr bool kIsTemporary = !std::is_lvalue_reference_v<Vector> &&
-                                  std::is_base_of_v<typename Plain::PlainObject, Plain>;
+    constexpr bool kIsTemporary = !std::is_lvalue_reference_v<Vector> && core::kOwnsValues<Plain>;
     if constexpr (!std::same_as<typename Plain::Scalar, double>) {
       static_assert(std::same_as<typename Plain::Scalar, double>,
                     "give a vector of double: as_waypoint(t, x.cast<double>())");

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
 
 #include "splinecast/state.hpp"
 #include "splinecast/time.hpp"
@@ -63,5 +67,69 @@ struct Waypoints {
             .acceleration = row(accelerations)};
   }
 };
+
+/// Matrices of Eigen as waypoints, without Eigen: for splinecast/eigen.hpp.
+namespace core {
+
+/// Whether an argument is in memory that lasts longer than the call.
+template <class T, class Plain = std::remove_cvref_t<T>>
+concept Lasting = EigenMemory<Plain> &&(std::is_lvalue_reference_v<T> || !kOwnsValues<Plain>);
+
+/// The shape of a matrix in memory: `count` contiguous lists of `size` values, `stride` apart.
+struct Lists {
+  std::size_t count, size, stride;
+};
+
+/// The columns of a column-major matrix, the rows of a row-major one. A vector is one list, or, if
+/// there are as many times as values, one value per time.
+template <class Matrix>
+[[nodiscard]] Lists lists_of(const Matrix& matrix, std::size_t times) noexcept {
+  if constexpr (static_cast<bool>(Matrix::IsVectorAtCompileTime)) {
+    const auto size = static_cast<std::size_t>(matrix.size());
+    return size == times ? Lists{size, 1, 1} : Lists{1, size, size};
+  } else {
+    return {static_cast<std::size_t>(matrix.outerSize()),
+            static_cast<std::size_t>(matrix.innerSize()),
+            static_cast<std::size_t>(matrix.outerStride())};
+  }
+}
+
+/// Views a matrix of one list per time as one contiguous span. Throws std::invalid_argument if it
+/// has another shape, or gaps between its lists.
+template <class Matrix>
+[[nodiscard]] auto values_of(Matrix&& matrix, std::size_t times, std::size_t size) {
+  using Plain = std::remove_cvref_t<Matrix>;
+  const Lists lists = lists_of(matrix, times);
+  if (lists.count != times || lists.size != size || (times > 1 && lists.stride != size)) {
+    const std::string list = static_cast<bool>(Plain::IsRowMajor) ? "row" : "column";
+    throw std::invalid_argument("a matrix of " + std::to_string(matrix.rows()) + " x " +
+                                std::to_string(matrix.cols()) + " values, " +
+                                std::to_string(lists.stride) + " from " + list + " to " + list +
+                                "; expected " + std::to_string(times) + " contiguous " + list +
+                                "s of " + std::to_string(size) + " values, one per time");
+  }
+  return std::span(matrix.data(), times * size);
+}
+
+/// Refuses at compile time what is not a matrix of double in memory that lasts.
+template <class Matrix, class Plain = std::remove_cvref_t<Matrix>>
+[[nodiscard]] constexpr bool is_matrix_in_memory() noexcept {
+  if constexpr (!EigenExpression<Plain>) {
+    static_assert(kNever<Matrix>, "as_waypoints: give the times and matrices of Eigen");
+  } else if constexpr (!std::same_as<typename Plain::Scalar, double>) {
+    static_assert(kNever<Matrix>,
+                  "as_waypoints: give matrices of double; for float store .cast<double>() in a "
+                  "variable");
+  } else if constexpr (!Lasting<Matrix>) {
+    static_assert(kNever<Matrix>,
+                  "as_waypoints: store the expression or temporary in a variable and give that, "
+                  "because a recording is not copied");
+  } else {
+    return true;
+  }
+  return false;
+}
+
+}  // namespace core
 
 }  // namespace splinecast
