@@ -111,6 +111,25 @@ template <class Matrix>
   return std::span(matrix.data(), times * size);
 }
 
+/// Refuses at compile time what is not a vector of double.
+template <class T, class Plain = std::remove_cvref_t<T>>
+[[nodiscard]] constexpr bool is_vector() noexcept {
+  if constexpr (!EigenExpression<Plain>) {
+    static_assert(kNever<T>,
+                  "as_waypoint: give vectors of double, an Isometry3d or a Quaterniond; of an "
+                  "Affine3d or a pose of float make an Isometry3d");
+  } else if constexpr (!std::same_as<typename Plain::Scalar, double>) {
+    static_assert(kNever<T>, "as_waypoint: give vectors of double; for float use .cast<double>()");
+  } else if constexpr (!static_cast<bool>(Plain::IsVectorAtCompileTime)) {
+    static_assert(kNever<T>,
+                  "as_waypoint: give a vector, one column or one row: m.col(i), m.row(i) or "
+                  "VectorXd; for a whole matrix use as_waypoints");
+  } else {
+    return true;
+  }
+  return false;
+}
+
 /// Refuses at compile time what is not a matrix of double in memory that lasts.
 template <class Matrix, class Plain = std::remove_cvref_t<Matrix>>
 [[nodiscard]] constexpr bool is_matrix_in_memory() noexcept {

@@ -125,22 +125,10 @@ template <class T, class Plain = std::remove_cvref_t<T>>
     return as_values(values);
   } else if constexpr (std::convertible_to<T, std::span<const double>>) {
     return VectorView(values);
-  } else if constexpr (!EigenExpression<Plain>) {
-    static_assert(kNever<T>,
-                  "as_waypoint: give vectors of double, an Isometry3d or a Quaterniond; of an "
-                  "Affine3d or a pose of float make an Isometry3d");
-    return VectorView();
-  } else if constexpr (!std::same_as<typename Plain::Scalar, double>) {
-    static_assert(kNever<T>, "as_waypoint: give vectors of double; for float use .cast<double>()");
-    return VectorView();
-  } else if constexpr (!static_cast<bool>(Plain::IsVectorAtCompileTime)) {
-    static_assert(kNever<T>,
-                  "as_waypoint: give a vector, one column or one row: m.col(i), m.row(i) or "
-                  "VectorXd; for a whole matrix use as_waypoints");
+  } else if constexpr (!is_vector<T>()) {
     return VectorView();
   } else if constexpr (Lasting<T>) {
-    return VectorView(
-        std::span<const double>(values.data(), static_cast<std::size_t>(values.size())));
+    return VectorView(std::forward<T>(values));
   } else {
     return on_stack(values);
   }
@@ -170,25 +158,28 @@ class EigenPoint {
 
 namespace core {
 
+template <class Point, class... Parts>
+[[nodiscard]] auto point(Time time, const Parts&... parts) {
+  return EigenPoint<Point, Parts...>(time, parts...);
+}
+template <class Point, std::same_as<VectorView>... Views>
+[[nodiscard]] Point point(Time time, const Views&... parts) {
+  return {time, parts...};
+}
+
+template <class Point, class State>
+[[nodiscard]] Point point_of(Time time, State&& state) requires requires {
+  state.acceleration;
+}
+{ return {time, state.position, state.velocity, state.acceleration}; }
 template <class Point, class... Vectors>
 [[nodiscard]] auto point_of(Time time, Vectors&&... vectors) {
-  constexpr bool kIsState = (requires(const Vectors& state) { state.acceleration; } && ...);
-  if constexpr (sizeof...(Vectors) < 1 || sizeof...(Vectors) > 3) {
+  if constexpr (sizeof...(Vectors) >= 1 && sizeof...(Vectors) <= 3) {
+    return point<Point>(time, part(std::forward<Vectors>(vectors))...);
+  } else {
     static_assert(kNever<Point>,
                   "as_waypoint: give a time, a position and, optionally, a velocity and an "
                   "acceleration; or a time and an EigenState");
-  } else if constexpr (kIsState) {
-    return [&](const auto& state) {
-      return Point{time, state.position, state.velocity, state.acceleration};
-    }(vectors...);
-  } else {
-    return [&]<class... Parts>(const Parts&... parts) {
-      if constexpr ((std::same_as<Parts, VectorView> && ...)) {
-        return Point{time, parts...};
-      } else {
-        return EigenPoint<Point, Parts...>(time, parts...);
-      }
-    }(part(std::forward<Vectors>(vectors))...);
   }
 }
 
