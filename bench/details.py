@@ -28,6 +28,8 @@ instructions go. It is for developers who compare a change or doubt a figure.
 
 - *gsl*: the GNU Scientific Library, a cubic spline and an accelerator per dimension in this process. A sample is
   position, velocity and acceleration. `append` solves 1,024 knots again.
+- *eigen* 3.4: the equations of the window of `append` with K = 8, dense of fixed size (PartialPivLU, LLT) and sparse
+  with a pattern that is analysed once (SparseLU, SimplicialLDLT). No segment is made of the velocities.
 - *makima*: `push_back` of boost::math::interpolators::makima. The curve is C¹ only.
 - *iceoryx* 2.0.3: sends the same payload there and back, polled, with its own iox-roudi.
 - *floor/eval*: the polynomial alone, from this process's own memory.

@@ -113,7 +113,7 @@ void follow(Reader& reader) {
   for (int tick = 0; tick < kTicks && !has_ended(reader, now); ++tick, now += kStep) {
     std::this_thread::sleep_until(std::chrono::steady_clock::time_point(now));  // CLOCK_MONOTONIC
     horizon.set_times(now, kStep);
-    const std::uint64_t revision = reader.sample_many(horizon.times(), horizon.block());
+    const std::uint64_t revision = reader.sample_many(horizon.times(), horizon);
     if (horizon.status()[0] == SampleStatus::retired) break;
     if (revision != 0 && horizon.is_complete()) {  // else no data yet, or busy: u remains
       const Eigen::Vector2d wanted = horizon.position().col(0).head<2>();

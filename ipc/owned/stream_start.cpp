@@ -78,7 +78,7 @@ AppendStatus StreamStart::append(const Waypoint& waypoint, WaypointRingWriter& w
   return status == AppendStatus::accepted ? started(writer.append(waypoint, known)) : status;
 }
 
-AppendStatus StreamStart::replace_from(Time t, std::span<const Waypoint> waypoints, Time blend,
+AppendStatus StreamStart::replace_from(Time t, const ReplacementPath& waypoints, Time blend,
                                        WaypointRingWriter& writer, const Solved& known,
                                        const RegionHeader* board) noexcept {
   if (waypoints.empty()) return writer.replace_from(t, waypoints, known);

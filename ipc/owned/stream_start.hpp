@@ -8,6 +8,7 @@
 #include "ipc/layout/header.hpp"
 #include "ipc/owned/old_end.hpp"
 #include "ipc/owned/ring.hpp"
+#include "ipc/ring/path.hpp"
 #include "ipc/ring/writer.hpp"
 #include "splinecast/limits.hpp"
 #include "splinecast/options.hpp"
@@ -35,7 +36,7 @@ class StreamStart {
   /// header of the solver's board, null until a solver has attached.
   [[nodiscard]] AppendStatus append(const Waypoint& waypoint, WaypointRingWriter& writer,
                                     const Solved& known, const RegionHeader* board) noexcept;
-  [[nodiscard]] AppendStatus replace_from(Time t, std::span<const Waypoint> waypoints, Time blend,
+  [[nodiscard]] AppendStatus replace_from(Time t, const ReplacementPath& waypoints, Time blend,
                                           WaypointRingWriter& writer, const Solved& known,
                                           const RegionHeader* board) noexcept;
 

@@ -30,7 +30,7 @@ py::array view(py::handle self, std::span<const double> values) {
       py::dtype::of<double>(), {static_cast<py::ssize_t>(values.size())}, {}, values.data(), self};
 }
 
-template <std::span<const double> (State::*Part)() const noexcept>
+template <VectorView (State::*Part)() const noexcept>
 py::array part(py::handle self) {
   return view(self, (self.cast<const Sample&>().state.*Part)());
 }

@@ -141,7 +141,7 @@ AppendStatus WaypointRingWriter::append(const Waypoint& waypoint, const Solved& 
   return status;
 }
 
-AppendStatus WaypointRingWriter::check_replacement(Time t, std::span<const Waypoint> waypoints,
+AppendStatus WaypointRingWriter::check_replacement(Time t, const ReplacementPath& waypoints,
                                                    const Solved& solved,
                                                    Time blend) const noexcept {
   if (waypoints.empty()) return check_stop(t, solved);
@@ -163,17 +163,17 @@ AppendStatus WaypointRingWriter::check_replacement(Time t, std::span<const Waypo
 /// Checks the waypoints of a replacement from t on. Those of one as soon as possible may begin
 /// before; its t is -kLatestTime if no settled time is known.
 AppendStatus WaypointRingWriter::check_path(Time t, bool is_soonest,
-                                            std::span<const Waypoint> waypoints,
+                                            const ReplacementPath& waypoints,
                                             const Solved& solved) const noexcept {
   Time before = t;
-  for (const Waypoint& waypoint : waypoints) {
+  for (std::size_t i = 0; i < waypoints.size(); ++i) {
+    const Waypoint waypoint = waypoints[i];
     AppendStatus status = check_form(waypoint);
     if (status == AppendStatus::accepted && is_too_far_ahead(waypoint.time, solved)) {
       status = AppendStatus::too_far_ahead;
     }
-    const bool is_first = &waypoint == &waypoints.front();
     const bool is_begin =
-        is_soonest && is_first && (t == -kLatestTime || waypoint.time - t < intervals_.least);
+        is_soonest && i == 0 && (t == -kLatestTime || waypoint.time - t < intervals_.least);
     if (status == AppendStatus::accepted && !is_begin) {
       status = judge_interval(waypoint.time - before, intervals_);
     }
@@ -189,7 +189,7 @@ Time WaypointRingWriter::earliest_replacement(const Solved& solved) noexcept {
   return std::max(solved.settled_until, solved.clock->latest(now, solved.settle_ahead));
 }
 
-AppendStatus WaypointRingWriter::replace_from(Time t, std::span<const Waypoint> waypoints,
+AppendStatus WaypointRingWriter::replace_from(Time t, const ReplacementPath& waypoints,
                                               const Solved& solved, Time blend) noexcept {
   if (waypoints.empty()) return counted(stop_from(t, solved));
   const AppendStatus status = check_replacement(t, waypoints, solved, blend);

@@ -11,6 +11,7 @@
 #include "ipc/layout/waypoint_items.hpp"
 #include "ipc/memory/word.hpp"
 #include "ipc/ring/item.hpp"
+#include "ipc/ring/path.hpp"
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/options.hpp"
@@ -119,11 +120,11 @@ class WaypointRingWriter {
   /// `too_far_apart`. A replacement without waypoints is a stop, which may use the reserve. A stop
   /// at a time that has settled takes effect as early as possible. A stop adds no item if the
   /// newest item is a stop at the same time or earlier that has not been consumed.
-  [[nodiscard]] AppendStatus replace_from(Time t, std::span<const Waypoint> waypoints,
+  [[nodiscard]] AppendStatus replace_from(Time t, const ReplacementPath& waypoints,
                                           const Solved& solved, Time blend = {}) noexcept;
 
   /// Returns what `replace_from` would return, also for a stop. Changes nothing.
-  [[nodiscard]] AppendStatus check_replacement(Time t, std::span<const Waypoint> waypoints,
+  [[nodiscard]] AppendStatus check_replacement(Time t, const ReplacementPath& waypoints,
                                                const Solved& solved,
                                                Time blend = {}) const noexcept;
 
@@ -159,8 +160,7 @@ class WaypointRingWriter {
  private:
   AppendStatus refused(AppendStatus status) noexcept;
   [[nodiscard]] AppendStatus check_form(const Waypoint& waypoint) const noexcept;
-  [[nodiscard]] AppendStatus check_path(Time t, bool is_soonest,
-                                        std::span<const Waypoint> waypoints,
+  [[nodiscard]] AppendStatus check_path(Time t, bool is_soonest, const ReplacementPath& waypoints,
                                         const Solved& solved) const noexcept;
   [[nodiscard]] bool has_room(Word items, const Solved& solved, std::size_t free) const noexcept {
     return written_ - solved.consumed + items + free <= layout_.capacity;

@@ -181,13 +181,15 @@ struct Producer::Impl {
     }
   }
 
-  AppendStatus replace_from(Time t, std::span<const Waypoint> waypoints, Time blend) noexcept {
+  AppendStatus replace_from(Time t, const ipc::ReplacementPath& path, Time blend) noexcept {
     const auto known = look_at_solver();
-    if (start.is_open()) {
-      return start.replace_from(t, waypoints, blend, ring.writer, known, board_header());
-    }
-    const AppendStatus status = ring.writer.replace_from(t, waypoints, known, blend);
-    is_first = is_first && status != AppendStatus::accepted;
+    const bool begins = start.is_open();
+    const AppendStatus status = wake_solver_for(
+        begins ? start.replace_from(t, path, blend, ring.writer, known, board_header())
+               : ring.writer.replace_from(t, path, known, blend),
+        1 + path.size());
+    is_first = is_first && (begins || status != AppendStatus::accepted);
+    if (status == AppendStatus::accepted) replacement = last_item;
     return status;
   }
 
@@ -239,10 +241,11 @@ AppendStatus Producer::append(const Waypoint& waypoint) noexcept {
 
 AppendStatus Producer::replace_from(Time t, std::span<const Waypoint> waypoints,
                                     const ReplaceOptions& options) noexcept {
-  const AppendStatus status = impl_->wake_solver_for(
-      impl_->replace_from(t, waypoints, options.blend), 1 + waypoints.size());
-  if (status == AppendStatus::accepted) impl_->replacement = impl_->last_item;
-  return status;
+  return impl_->replace_from(t, waypoints, options.blend);
+}
+
+AppendStatus Producer::replace_by_columns(Time t, const Waypoints& columns, Time blend) noexcept {
+  return impl_->replace_from(t, columns, blend);
 }
 
 ReplacePreview Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -183,6 +184,19 @@ class Producer {
     return replace_from(Time::min(), waypoints, options);
   }
 
+  /// The same with waypoints in columns, such as as_waypoints() makes of matrices. Does not
+  /// allocate. `wrong_dimension` also if a column does not have D values per time.
+  template <std::same_as<Waypoints> Columns>
+  [[nodiscard]] AppendStatus replace_from(Time t, const Columns& waypoints,
+                                          const ReplaceOptions& options = {}) noexcept {
+    return replace_by_columns(t, waypoints, options.blend);
+  }
+  template <std::same_as<Waypoints> Columns>
+  [[nodiscard]] AppendStatus replace_from(const Columns& waypoints,
+                                          const ReplaceOptions& options = {}) noexcept {
+    return replace_by_columns(Time::min(), waypoints, options.blend);
+  }
+
   /// Computes what `replace_from` with these arguments would do, without changing anything:
   /// duration of the entry, largest velocities, accelerations and jerks, waypoints passed over. For
   /// a stop: its duration from t, or from the earliest time if that is later. The result is what
@@ -310,6 +324,8 @@ class Producer {
   friend struct ipc::Internals;
   struct Impl;
   explicit Producer(std::unique_ptr<Impl> impl) noexcept;
+  [[nodiscard]] AppendStatus replace_by_columns(Time t, const Waypoints& columns,
+                                                Time blend) noexcept;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -61,7 +61,7 @@ void sample_and_compare(Reader& reader, EigenHorizon<D, kStored>& horizon) {
   const auto revision = reader.sample_many(
       horizon.times(), {.values = values, .status = status, .derivatives = kStored});
   ASSERT_GT(revision, 0U);
-  ASSERT_EQ(reader.sample_many(horizon.times(), horizon.block()), revision);
+  ASSERT_EQ(reader.sample_many(horizon.times(), horizon), revision);
   EXPECT_TRUE(std::ranges::equal(horizon.status(), status));
   ASSERT_EQ(static_cast<std::size_t>(horizon.states().size()), values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -167,8 +167,8 @@ TEST(EigenHorizon, IsNotCompleteIfOneTimeHasNoValues) {
 template <int D>
 double tracking_cost(Reader& reader, EigenHorizon<D>& horizon, EigenState<D>& state, Time now) {
   horizon.set_times(now, kSpacing / 10);
-  if (reader.sample_many(horizon.times(), horizon.block()) == 0) return -1;
-  if (!has_values(reader.sample(now, state.ref()))) return -1;
+  if (reader.sample_many(horizon.times(), horizon) == 0) return -1;
+  if (!has_values(reader.sample(now, state))) return -1;
   const double position = (horizon.position().colwise() - state.position).squaredNorm();
   return position + (horizon.velocity().colwise() - state.velocity).squaredNorm();
 }
