@@ -9,7 +9,6 @@ namespace splinecast::ipc {
 /// Distance in bytes between words that different processes write or poll: two cache lines, because
 /// processors prefetch adjacent lines in pairs.
 inline constexpr std::size_t kSeparation = 128;
-inline constexpr std::size_t kCacheLine = 64;
 inline constexpr std::size_t kPage = 4096;
 
 /// The same distance in words.
