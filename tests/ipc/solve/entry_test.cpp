@@ -87,7 +87,7 @@ TEST(Entry, WithoutAReachableWaypointContinuesAlongALineToAStop) {
   ASSERT_EQ(live.course(), Course::beyond);
   EXPECT_EQ(live.solver.summary().passed_over, 3U);
   // At this time the extrapolation line from the newest waypoint ends.
-  const Time line_end = at(920) + core::Extrapolation::kLine;
+  const Time line_end = at(920) + core::Extrapolation::kLineLength;
   State end(1);
   EXPECT_TRUE(has_values(live.sampler.preview(line_end, end.ref())));
   live.run_to(3000);
