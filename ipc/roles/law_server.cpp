@@ -22,7 +22,7 @@ constexpr Time kNotice = std::chrono::milliseconds(20);
 
 /// Accelerations beyond any ramp. With this limit an entry is not compared with the motion that the
 /// law has shown, and ends at the first waypoint after it.
-constexpr double kBeyondAnyRamp = 1e12;
+constexpr double kAboveAnyRamp = 1e12;
 
 void describe_law(RegionHeader& header) {
   header.is_law = 1;
@@ -46,7 +46,7 @@ bool LawServer::is_wanted(const std::string& law, const RegionWatch& watch) {
 
 SolverOptions LawServer::solver_options(const SolverOptions& options) {
   return {.method = find_method("quintic"),
-          .limits = MotionLimits{.acceleration = {kBeyondAnyRamp}},
+          .limits = MotionLimits{.acceleration = {kAboveAnyRamp}},
           .freeze_ahead = options.freeze_ahead,
           .history = options.history,
           .min_entry = Time(1),

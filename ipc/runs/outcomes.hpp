@@ -18,7 +18,7 @@ struct RunProgress {
   Word knots = 0;
   Word met = 0;
   Word unmet = 0;
-  Word goal = 0;  ///< the open entry ends beyond, at the waypoint before this one; 0: at none
+  Word goal = 0;  ///< the open entry ends ahead, at the waypoint before this one; 0: at none
 
   [[nodiscard]] bool is_interpolated() const noexcept {
     return course == Course::on_target || course == Course::entering;

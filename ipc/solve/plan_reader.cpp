@@ -36,7 +36,7 @@ core::End end_of(Course course) noexcept {
       return core::Waiting{};
     case Course::entering:
       return core::Entering{};
-    case Course::beyond:
+    case Course::ahead:
       return core::EnteringAhead{};
     case Course::starting:
       return core::Starting{};
