@@ -73,7 +73,7 @@ void RequestRegions::find_untried() {
   std::ranges::reverse(untried_);
 }
 
-bool RequestRegions::look_around() {
+bool RequestRegions::poll() {
   const bool has_dropped = drop_gone();
   if (has_news()) find_untried();
   seen_ = known_->version();

@@ -13,23 +13,23 @@
 
 namespace splinecast::ipc {
 
-void StreamSweep::look_around() {
-  if (regions_.version() != seen_ || looks_again_) {
-    looks_again_ = true;
-    look_for_names();
+void StreamSweep::poll() {
+  if (regions_.version() != seen_ || must_list_again_) {
+    must_list_again_ = true;
+    list_found_streams();
     seen_ = regions_.version();
-    looks_again_ = false;
+    must_list_again_ = false;
   }
   note_ends_of_motion();
-  look_at_given_up();
-  if (to_take_.empty()) look_elsewhere();
-  if (to_take_.empty()) look_at_postponed();
+  retry_given_up();
+  if (to_take_.empty()) check_elsewhere();
+  if (to_take_.empty()) retry_postponed();
   if (is_any_unheld_) hold_regions();
 }
 
 /// Lists the streams to attach to, and drops streams that were found by a pattern and no longer
 /// exist.
-void StreamSweep::look_for_names() {
+void StreamSweep::list_found_streams() {
   to_take_.clear();
   given_up_.clear();
   std::set<std::string> existing = regions_.streams();
@@ -78,8 +78,8 @@ StreamSweep::Files StreamSweep::files_of(const std::string& stream) {
 
 /// Finds streams whose files have been replaced since they were given up: they are new streams, and
 /// are reported as such. At most kTries in one call: any user can make thousands of such files.
-void StreamSweep::look_at_given_up() {
-  for (std::size_t looks = 0; looks < kTries && !given_up_.empty(); ++looks) {
+void StreamSweep::retry_given_up() {
+  for (std::size_t checked = 0; checked < kTries && !given_up_.empty(); ++checked) {
     const std::string stream = std::move(given_up_.back());
     given_up_.pop_back();
     const auto found = members_.find(stream);
@@ -103,25 +103,25 @@ void StreamSweep::note_ends_of_motion() {
 }
 
 /// Checks whether streams of other processes have lost their solver: at most kTries in one call.
-void StreamSweep::look_elsewhere() {
+void StreamSweep::check_elsewhere() {
   if (elsewhere_.empty()) {
     for (const auto& [stream, member] : members_) {
       if (member.state == State::elsewhere) elsewhere_.push_back(stream);
     }
   }
-  for (std::size_t looks = 0; looks < kTries && !elsewhere_.empty(); ++looks) {
+  for (std::size_t checked = 0; checked < kTries && !elsewhere_.empty(); ++checked) {
     const std::string stream = std::move(elsewhere_.back());
     elsewhere_.pop_back();
     const auto found = members_.find(stream);
     if (found == members_.end() || found->second.state != State::elsewhere) continue;
     if (is_owned(stream, RegionKind::spline)) continue;
     to_take_.push_back(stream);
-    looks = 0;
+    checked = 0;
   }
 }
 
 /// Retries the next of the streams that lacked memory or descriptors.
-void StreamSweep::look_at_postponed() {
+void StreamSweep::retry_postponed() {
   if (now_ < next_retry_) return;
   next_retry_ = now_ + kRetry;
   const auto is_postponed = [](const auto& entry) {

@@ -57,7 +57,7 @@ bool StreamSweep::own(const std::string& stream, Member& member) {
   } catch (const LawLost& error) {
     drop(stream, member, error);
   } catch (const NoSuchStream&) {
-    looks_again_ = true;  // it was just removed
+    must_list_again_ = true;  // it was just removed
   } catch (const std::exception& error) {
     drop(stream, member, error);
   }
@@ -67,7 +67,7 @@ bool StreamSweep::own(const std::string& stream, Member& member) {
 /// Attaches to the stream if it exists. Returns whether it did.
 bool StreamSweep::attach(const std::string& stream, Member& member, const Clock& clock) {
   try {
-    regions_.look();  // a law begins with the requests that are there
+    regions_.poll();  // a law begins with the requests that are there
     if (!member.waiting->attach(clock)) {
       const bool is_noted = std::ranges::find(moving_, stream) != moving_.end();
       if (member.waiting->due() < Time::max() && !is_noted) moving_.push_back(stream);
