@@ -22,15 +22,15 @@ void StreamSweep::poll() {
   }
   note_ends_of_motion();
   retry_given_up();
-  if (to_take_.empty()) check_elsewhere();
-  if (to_take_.empty()) retry_postponed();
+  if (to_attach_.empty()) check_elsewhere();
+  if (to_attach_.empty()) retry_postponed();
   if (is_any_unheld_) hold_regions();
 }
 
 /// Lists the streams to attach to, and drops streams that were found by a pattern and no longer
 /// exist.
 void StreamSweep::list_found_streams() {
-  to_take_.clear();
+  to_attach_.clear();
   given_up_.clear();
   std::set<std::string> existing = regions_.streams();
   // The ring of a law is made by its solver, once there is a commander.
@@ -49,9 +49,9 @@ void StreamSweep::list_found_streams() {
     const bool exists = existing.contains(stream);
     if (!exists && !member.is_named) continue;
     if (member.state == State::given_up) given_up_.push_back(stream);
-    if (is_to_be_tried(member)) to_take_.push_back(stream);
+    if (is_to_be_tried(member)) to_attach_.push_back(stream);
   }
-  std::ranges::reverse(to_take_);
+  std::ranges::reverse(to_attach_);
 }
 
 bool StreamSweep::is_wanted(const std::string& stream) const {
@@ -86,7 +86,7 @@ void StreamSweep::retry_given_up() {
     if (found == members_.end() || found->second.state != State::given_up) continue;
     if (files_of(stream) == found->second.files) continue;
     found->second.state = State::unowned;
-    to_take_.push_back(stream);
+    to_attach_.push_back(stream);
   }
 }
 
@@ -97,7 +97,7 @@ void StreamSweep::note_ends_of_motion() {
     if (found == members_.end() || !found->second.waiting) return true;
     const Time end = found->second.waiting->due();
     if (end > now_) return end == Time::max();
-    to_take_.push_back(stream);
+    to_attach_.push_back(stream);
     return true;
   });
 }
@@ -115,7 +115,7 @@ void StreamSweep::check_elsewhere() {
     const auto found = members_.find(stream);
     if (found == members_.end() || found->second.state != State::elsewhere) continue;
     if (is_owned(stream, RegionKind::spline)) continue;
-    to_take_.push_back(stream);
+    to_attach_.push_back(stream);
     checked = 0;
   }
 }
@@ -130,7 +130,7 @@ void StreamSweep::retry_postponed() {
   auto next = std::find_if(members_.upper_bound(last_retried_), members_.end(), is_postponed);
   if (next == members_.end()) next = std::ranges::find_if(members_, is_postponed);
   if (next == members_.end()) return;
-  to_take_.push_back(next->first);
+  to_attach_.push_back(next->first);
   last_retried_ = next->first;
 }
 

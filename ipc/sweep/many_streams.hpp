@@ -106,7 +106,7 @@ class StreamSweep {
   void retry_postponed();
 
   // Attaching to streams, and giving them up: taking_up.cpp.
-  void take_next(const Clock& clock);
+  void attach_next(const Clock& clock);
   [[nodiscard]] bool own(const std::string& stream, Member& member);
   [[nodiscard]] bool attach(const std::string& stream, Member& member, const Clock& clock);
   void make_room();
@@ -139,7 +139,7 @@ class StreamSweep {
   Time next_retry_ = Time::min();
   std::string last_retried_;            ///< the postponed stream that was retried last
   bool is_any_unheld_ = false;          ///< whether a board may lack its region lock
-  std::vector<std::string> to_take_;    ///< streams to try next, in reverse order
+  std::vector<std::string> to_attach_;  ///< streams to try next, in reverse order
   std::vector<std::string> given_up_;   ///< streams whose files may have been replaced
   std::vector<std::string> elsewhere_;  ///< streams of other processes to check, in reverse order
   std::vector<std::string> moving_;     ///< streams that wait for the end of an earlier motion

@@ -28,20 +28,20 @@ bool StreamSweep::sweep(const Clock& clock) {
     has_more = serve(calling_[i], clock) || has_more;
   }
   if (has_detached_) release_detached();
-  return has_more || !to_take_.empty();
+  return has_more || !to_attach_.empty();
 }
 
 void StreamSweep::attach_waiting(const Clock& clock) {
   // Does not poll while there are streams to attach to: attaching creates files, and each of them
   // would trigger another poll.
-  if (to_take_.empty() && now_ >= next_poll_) {
+  if (to_attach_.empty() && now_ >= next_poll_) {
     next_poll_ = now_ + kDiscoveryInterval;
     poll();
     // Limits the share of the time that polls take, for any number of files in the folder.
     constexpr int kShare = 20;
     next_poll_ = std::max(next_poll_, clock.now() + kShare * (clock.now() - now_));
   }
-  if (!to_take_.empty()) take_next(clock);
+  if (!to_attach_.empty()) attach_next(clock);
 }
 
 /// Collects the streams that have work to do.

@@ -23,10 +23,10 @@ bool is_transient(const std::exception& error) noexcept {
 }  // namespace
 
 /// Attaches to the next stream that is ready.
-void StreamSweep::take_next(const Clock& clock) {
-  for (std::size_t tries = 0; tries < kTries && !to_take_.empty(); ++tries) {
-    const std::string stream = std::move(to_take_.back());
-    to_take_.pop_back();
+void StreamSweep::attach_next(const Clock& clock) {
+  for (std::size_t tries = 0; tries < kTries && !to_attach_.empty(); ++tries) {
+    const std::string stream = std::move(to_attach_.back());
+    to_attach_.pop_back();
     const auto found = members_.find(stream);
     if (found == members_.end() || found->second.state == State::solved) continue;
     if (own(stream, found->second) && attach(stream, found->second, clock)) return;
