@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/batch/knots.hpp"
-#include "core/solvers/procedure.hpp"
+#include "core/solvers/families.hpp"
 
 namespace splinecast {
 namespace {

@@ -9,7 +9,6 @@
 #include "core/batch/at_once.hpp"
 #include "core/slopes/rule.hpp"
 #include "core/solvers/families.hpp"
-#include "core/solvers/procedure.hpp"
 #include "splinecast/waypoint.hpp"
 
 namespace splinecast {

@@ -6,7 +6,7 @@
 #include "core/simd/clones.hpp"
 #include "core/simd/lanes.hpp"
 #include "core/solvers/back_substitution.hpp"
-#include "core/solvers/procedure.hpp"
+#include "core/solvers/families.hpp"
 
 namespace splinecast::core {
 

@@ -4,7 +4,6 @@
 
 #include "core/slopes/rule.hpp"
 #include "core/solvers/families.hpp"
-#include "core/solvers/procedure.hpp"
 
 namespace splinecast::core {
 namespace {
