@@ -91,9 +91,9 @@ std::unique_ptr<ipc::LawFollower> open_law(const RateOptions& options) {
 
 std::vector<ipc::CommanderState> commanders_of(const RateOptions& options) {
   ipc::RegionWatch watch;
-  watch.look();
+  watch.poll();
   ipc::Commanders commanders(options.law, options.trust, watch);
-  commanders.look_around();
+  commanders.poll();
   commanders.read(MonotonicClock().now());
   return commanders.states();
 }

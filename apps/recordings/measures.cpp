@@ -94,10 +94,10 @@ struct ChordPair {
 /// Whether a dimension moves along a chord by more than the noise.
 bool moves(const WaypointTable& table, std::size_t i, std::size_t j,
            std::span<const DimensionMotion> motion) {
-  constexpr double kBeyondNoise = 6;
+  constexpr double kAboveNoise = 6;
   for (std::size_t d = 0; d < motion.size(); ++d) {
     const double distance = std::abs(position(table, j, d) - position(table, i, d));
-    if (distance > kBeyondNoise * motion[d].noise) return true;
+    if (distance > kAboveNoise * motion[d].noise) return true;
   }
   return false;
 }

@@ -11,11 +11,11 @@ namespace splinecast::apps {
 
 Holders holders_by_stream(const Trust& trust) {
   ipc::RegionWatch watch;
-  watch.look();
+  watch.poll();
   Holders holders;
   for (const auto& [stream, names] : watch.stoppers().names()) {
     ipc::Stoppers stoppers(stream, trust, watch);
-    stoppers.look_around(MonotonicClock().now());
+    stoppers.poll(MonotonicClock().now());
     for (const ipc::StopperState& state : stoppers.read()) {
       if (state.holds) holders[stream].push_back(state.name);
     }

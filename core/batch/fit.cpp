@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/batch/knots.hpp"
+#include "core/solvers/families.hpp"
 
 namespace splinecast {
 namespace {
@@ -33,9 +34,8 @@ void require_condition(const Condition& condition, const Method& method, std::si
 
 PiecewisePolynomial fit(const Waypoints& waypoints, const FitOptions& options) {
   const Method& method = *options.interpolant.method;
-  if (method.fit_at_once != nullptr) {
-    return method.fit_at_once(waypoints, options.start, options.end);
-  }
+  const core::FitAtOnce fit_at_once = core::procedure_of(method).fit_at_once;
+  if (fit_at_once != nullptr) return fit_at_once(waypoints, options.start, options.end);
   core::require_waypoints(waypoints);
   require_given(waypoints, method);
   require_parameters(options.interpolant);

@@ -68,8 +68,8 @@ double ratio_to_bounds(double value, double lower, double upper) noexcept {
     return std::abs(value - (lower + upper) / 2) / ((upper - lower) / 2);
   }
   const double bound = upper < kInfinity ? upper : lower;
-  const double beyond = upper < kInfinity ? value - upper : lower - value;
-  return std::max(0.0, 1 + beyond / std::max(1.0, std::abs(bound)));
+  const double outside = upper < kInfinity ? value - upper : lower - value;
+  return std::max(0.0, 1 + outside / std::max(1.0, std::abs(bound)));
 }
 
 Finding position_finding(const Comparison& comparison, std::size_t d, double lower, double upper,

@@ -14,60 +14,82 @@
 namespace splinecast {
 namespace {
 
-constexpr std::array kSolved{
-    Method{.name = "c2",
-           .number = 0,
-           .solver = core::make_tridiagonal_solver,
-           .fit_at_once = core::fit_c2,
-           .traits = {.converges = true, .own_end = ConditionKind::halt},
-           .laws = {.continuity = 2, .degree = 3, .order_of_convergence = 4}},
-    Method{.name = "hermite",
-           .number = 1,
-           .solver = core::make_given_solver,
-           .traits = {.needs_velocity = true, .has_own_tail = true},
-           .look_ahead = 1,
-           .laws = {.continuity = 1, .degree = 3, .order_of_convergence = 4}},
-    Method{.name = "quintic",
-           .number = 2,
-           .solver = core::make_given_solver,
-           .traits = {.needs_velocity = true, .has_own_tail = true},
-           .order = kMaxOrder,
-           .look_ahead = 1,
-           .laws = {.continuity = 2, .degree = 5, .order_of_convergence = 6}},
-    // Reproduces lines on regular meshes only: time is not a linear function of its parameter.
-    Method{.name = "normalized",
-           .number = 3,
-           .fit_at_once = core::fit_normalized,
-           .laws = {.continuity = 0, .degree = 0, .order_of_convergence = 4}},
-    // The order is that of its limit λ → 0.
-    Method{.name = "smoothing",
-           .number = 4,
-           .solver = core::make_smoothing_solver,
-           .traits = {.converges = true, .has_own_tail = true, .smooths = true},
-           .laws = {.continuity = 2,
-                    .degree = 1,
-                    .order_of_convergence = 4,
-                    .is_interpolating = false}},
+/// A method, and how it is solved. It streams if it has a solver.
+struct Row {
+  Method method;
+  core::Procedure procedure;
 };
 
-std::vector<Method> all_methods() {
-  std::vector<Method> all(kSolved.begin(), kSolved.end());
+constexpr std::array kSolved{
+    Row{.method = {.name = "c2",
+                   .number = 0,
+                   .traits = {.converges = true, .own_end = ConditionKind::halt},
+                   .laws = {.continuity = 2, .degree = 3, .order_of_convergence = 4}},
+        .procedure = {.solver = core::make_tridiagonal_solver, .fit_at_once = core::fit_c2}},
+    Row{.method = {.name = "hermite",
+                   .number = 1,
+                   .traits = {.needs_velocity = true, .has_own_tail = true},
+                   .look_ahead = 1,
+                   .laws = {.continuity = 1, .degree = 3, .order_of_convergence = 4}},
+        .procedure = {.solver = core::make_given_solver}},
+    Row{.method = {.name = "quintic",
+                   .number = 2,
+                   .traits = {.needs_velocity = true, .has_own_tail = true},
+                   .order = kMaxOrder,
+                   .look_ahead = 1,
+                   .laws = {.continuity = 2, .degree = 5, .order_of_convergence = 6}},
+        .procedure = {.solver = core::make_given_solver}},
+    // Reproduces lines on regular meshes only: time is not a linear function of its parameter.
+    Row{.method = {.name = "normalized",
+                   .number = 3,
+                   .laws = {.continuity = 0, .degree = 0, .order_of_convergence = 4}},
+        .procedure = {.fit_at_once = core::fit_normalized}},
+    // The order is that of its limit λ → 0.
+    Row{.method = {.name = "smoothing",
+                   .number = 4,
+                   .traits = {.converges = true, .has_own_tail = true, .smooths = true},
+                   .laws = {.continuity = 2,
+                            .degree = 1,
+                            .order_of_convergence = 4,
+                            .is_interpolating = false}},
+        .procedure = {.solver = core::make_smoothing_solver}},
+};
+
+struct Table {
+  std::vector<Method> methods;
+  std::vector<core::Procedure> procedures;  ///< of the methods, in the same order
+
+  void add(Row row) {
+    row.method.traits.streams = row.procedure.solver != nullptr;
+    methods.push_back(row.method);
+    procedures.push_back(row.procedure);
+  }
+};
+
+Table all_methods() {
+  Table all;
+  for (const Row& row : kSolved) all.add(row);
   for (const core::SlopeRule& rule : core::slope_rules()) {
-    all.push_back({.name = rule.name,
-                   .number = rule.number,
-                   .solver = core::make_local_solver,
-                   .rule = &rule,
-                   .look_ahead = static_cast<std::size_t>(rule.ahead),
-                   .laws = rule.laws});
+    all.add({.method = {.name = rule.name,
+                        .number = rule.number,
+                        .look_ahead = static_cast<std::size_t>(rule.ahead),
+                        .laws = rule.laws},
+             .procedure = {.solver = core::make_local_solver, .rule = &rule}});
   }
   return all;
 }
 
+const Table& table() noexcept {
+  static const Table kAll = all_methods();
+  return kAll;
+}
+
 }  // namespace
 
-std::span<const Method> methods() noexcept {
-  static const std::vector<Method> kAll = all_methods();
-  return kAll;
+std::span<const Method> methods() noexcept { return table().methods; }
+
+const core::Procedure& core::procedure_of(const Method& method) noexcept {
+  return table().procedures[static_cast<std::size_t>(&method - methods().data())];
 }
 
 const Method& c2() noexcept { return methods().front(); }

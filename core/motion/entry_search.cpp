@@ -49,10 +49,10 @@ EntrySearch::Outcome EntrySearch::search(const SlidingWindow& target, const Inst
                                          const EntryRules& rules, int& tries) noexcept {
   knows_after_ = false;
   const Outcome at_knots = search_knots(target, from, rules, tries);
-  if (at_knots != Outcome::none || !rules.goes_beyond) return at_knots;
-  const Outcome beyond = search_ahead(target, from, rules, tries);
-  const bool falls_back = beyond == Outcome::none && rules.falls_back;
-  return falls_back ? fall_back(target, from, rules) : beyond;
+  if (at_knots != Outcome::none || !rules.may_end_ahead) return at_knots;
+  const Outcome ahead = search_ahead(target, from, rules, tries);
+  const bool falls_back = ahead == Outcome::none && rules.falls_back;
+  return falls_back ? fall_back(target, from, rules) : ahead;
 }
 
 EntrySearch::Outcome EntrySearch::search_knots(const SlidingWindow& target, const Instant& from,

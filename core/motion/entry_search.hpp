@@ -25,8 +25,8 @@ struct EntryRules {
       nullptr;                          ///< those of the target, at the rate 1; null: `limits`
   const MotionLimits* shown = nullptr;  ///< limits shown by the motion: see EntrySearch; null: none
   Time least{};                         ///< shortest duration of an entry
-  std::size_t newer = 0;     ///< an entry may end at a knot only if this many newer knots are known
-  bool goes_beyond = false;  ///< the entry may also end after the newest knot
+  std::size_t newer = 0;  ///< an entry may end at a knot only if this many newer knots are known
+  bool may_end_ahead = false;  ///< the entry may also end after the newest knot
   /// Positions that the published curve reaches anyway after the begin of the entry. Outside the
   /// bounds the entry may go as far, but not farther. Null: none.
   const PositionRange* reach = nullptr;

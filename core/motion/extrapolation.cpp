@@ -18,7 +18,7 @@ void Extrapolation::begin_line(const SlidingWindow& target) noexcept {
   const Knot newest = target.knot(target.knots() - 1);
   const MotionLimits& limits = target.limits_at_largest_rate();
   begin_ = newest.time;
-  line_end_ = begin_ + kLine;
+  line_end_ = begin_ + kLineLength;
   const StateRef from = from_.ref();
   std::ranges::copy(newest.position, from.position.begin());
   std::ranges::copy(newest.velocity, from.velocity.begin());
@@ -26,7 +26,7 @@ void Extrapolation::begin_line(const SlidingWindow& target) noexcept {
     const double most = kLineShare * limits.velocity[d];
     if (most > 0) from.velocity[d] = std::clamp(from.velocity[d], -most, most);
   }
-  const double line = to_seconds(kLine);
+  const double line = to_seconds(kLineLength);
   for (std::size_t d = 0; d < from.position.size(); ++d) {
     to_.ref().position[d] = from.position[d] + line * from.velocity[d];
   }

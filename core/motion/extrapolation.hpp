@@ -12,12 +12,12 @@
 namespace splinecast::core {
 
 /// The target of an entry after the newest knot of a run: a straight line with the velocity at that
-/// knot, of length kLine, then the stop segment. The velocity of the line is at most kLineShare of
-/// the velocity limit, per dimension, so that an entry can reach the line. Only the constructor
-/// allocates. Not thread-safe: one thread uses it.
+/// knot, of length kLineLength, then the stop segment. The velocity of the line is at most
+/// kLineShare of the velocity limit, per dimension, so that an entry can reach the line. Only the
+/// constructor allocates. Not thread-safe: one thread uses it.
 class Extrapolation {
  public:
-  static constexpr Time kLine{250'000'000};
+  static constexpr Time kLineLength{250'000'000};
   static constexpr double kLineShare = 0.8;
 
   explicit Extrapolation(std::size_t dimensions);

@@ -52,8 +52,8 @@ EntryRules PlanSearch::rules(const Plan& plan, const EntryBegin& from) const noe
 PlanSearch::Outcome PlanSearch::search(const Plan& plan, const EntryBegin& from, bool is_last,
                                        int& tries) noexcept {
   EntryRules how = rules(plan, from);
-  how.goes_beyond = is_last && options_.is_live;
-  how.newer = how.goes_beyond ? 0 : plan.window().options().settle;
+  how.may_end_ahead = is_last && options_.is_live;
+  how.newer = how.may_end_ahead ? 0 : plan.window().options().settle;
   return search_.search(plan.window(), from.state, how, tries);
 }
 
@@ -72,7 +72,7 @@ PlanSearch::Outcome PlanSearch::search_with(const Plan& plan, const Waypoint& wa
   trial_.window().freeze_knots(std::max(frozen, plan.window().frozen_knots()));
   trial_.window().append(waypoint);
   EntryRules how = rules(plan, from);
-  how.goes_beyond = true;
+  how.may_end_ahead = true;
   return search_.search(trial_.window(), from.state, how, tries);
 }
 

@@ -1,12 +1,14 @@
 #include "splinecast/bezier.hpp"
 
+#include <span>
+
 #include "core/basics/binomial.hpp"
 
 namespace splinecast {
 namespace {
 
 /// The control points b_j of degree n and length h follow from Δ^k b_0 = c_k h^k / C(n, k) and b_j
-/// = Σ C(j, k) Δ^k b_0: by repeated sums, and back by repeated differences.
+/// = Σ C(j, k) Δ^k b_0: by repeated sums.
 void scale_to_differences(std::span<double> c, std::size_t dimensions, double h) noexcept {
   const std::size_t degree = c.size() / dimensions - 1;
   double power_of_h = 1;
@@ -21,22 +23,6 @@ void scale_to_differences(std::span<double> c, std::size_t dimensions, double h)
 void differences_to_points(std::span<double> b, std::size_t dimensions) noexcept {
   for (std::size_t first = b.size() - dimensions; first > 0; first -= dimensions) {
     for (std::size_t j = first; j < b.size(); ++j) b[j] += b[j - dimensions];
-  }
-}
-
-void points_to_differences(std::span<double> b, std::size_t dimensions) noexcept {
-  for (std::size_t first = dimensions; first < b.size(); first += dimensions) {
-    for (std::size_t j = b.size(); j-- > first;) b[j] -= b[j - dimensions];
-  }
-}
-
-void scale_to_coefficients(std::span<double> c, std::size_t dimensions, double h) noexcept {
-  const std::size_t degree = c.size() / dimensions - 1;
-  double power_of_h = 1;
-  for (std::size_t k = 0; k <= degree; ++k) {
-    const double factor = h > 0 ? core::binomial(degree, k) / power_of_h : (k == 0 ? 1 : 0);
-    for (std::size_t d = 0; d < dimensions; ++d) c[k * dimensions + d] *= factor;
-    power_of_h *= h;
   }
 }
 
@@ -56,19 +42,6 @@ std::vector<BezierSegment> to_bezier(const PiecewisePolynomial& curve) {
     segments.push_back(std::move(segment));
   }
   return segments;
-}
-
-PiecewisePolynomial from_bezier(std::size_t dimensions, std::span<const BezierSegment> segments) {
-  PiecewisePolynomial curve(dimensions);
-  for (const BezierSegment& segment : segments) {
-    std::vector<double> c = segment.control_points;
-    if (dimensions > 0 && c.size() >= dimensions) {  // else append throws
-      points_to_differences(c, dimensions);
-      scale_to_coefficients(c, dimensions, to_seconds(segment.right - segment.left));
-    }
-    curve.append(segment.left, segment.right, segment.order, c);
-  }
-  return curve;
 }
 
 }  // namespace splinecast

@@ -12,13 +12,6 @@ namespace {
 
 std::string in_ns(Time t) { return std::to_string(t.count()) + " ns"; }
 
-void append_all(PiecewisePolynomial& to, const PiecewisePolynomial& curve, Time later = Time(0)) {
-  for (std::size_t i = 0; i < curve.segments(); ++i) {
-    to.append(curve.left_of(i) + later, curve.right_of(i) + later, curve.order_of(i),
-              curve.coefficients(i));
-  }
-}
-
 /// Re-expands a polynomial about s: repeated synthetic division by (u − s).
 void shift_expansion(std::span<double> coefficients, std::size_t dimensions, double s) {
   const std::size_t size = coefficients.size();
@@ -87,32 +80,6 @@ PiecewisePolynomial restricted(const PiecewisePolynomial& curve, Time from, Time
     result.append(left, right, curve.order_of(i), c);
     if (right == to) break;
   }
-  return result;
-}
-
-PiecewisePolynomial concatenated(const PiecewisePolynomial& a, const PiecewisePolynomial& b) {
-  if (a.dimensions() != b.dimensions()) {
-    throw std::invalid_argument("a curve of " + std::to_string(a.dimensions()) +
-                                " dimensions cannot be followed by one of " +
-                                std::to_string(b.dimensions()));
-  }
-  if (a.segments() == 0) return b;
-  if (b.segments() == 0) return a;
-  if (a.breaks().back() != b.breaks().front()) {
-    throw std::invalid_argument("a curve that ends at " + in_ns(a.breaks().back()) +
-                                " cannot be followed by one that begins at " +
-                                in_ns(b.breaks().front()));
-  }
-  if (a.is_hold()) return b;
-  if (b.is_hold()) return a;
-  PiecewisePolynomial result = a;
-  append_all(result, b);
-  return result;
-}
-
-PiecewisePolynomial shifted(const PiecewisePolynomial& curve, Time by) {
-  PiecewisePolynomial result(curve.dimensions());
-  append_all(result, curve, by);
   return result;
 }
 

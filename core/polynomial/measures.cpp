@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -12,9 +11,6 @@
 
 namespace splinecast {
 namespace {
-
-/// Tolerance of equality, relative to the largest terms.
-constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 
 /// A polynomial in s = u/h, 0 ≤ s ≤ 1, so that the magnitude of a coefficient bounds its term.
 struct UnitPolynomial {
@@ -41,13 +37,6 @@ UnitPolynomial unit_polynomial(const PiecewisePolynomial& curve, std::size_t seg
     power_of_h *= h;
   }
   return result;
-}
-
-/// An upper bound of the magnitude of the polynomial on [0, 1]: Σ |c_k|.
-double size_of(const UnitPolynomial& p) noexcept {
-  double size = 0;
-  for (const double term : p.coefficients()) size += std::abs(term);
-  return size;
 }
 
 /// The time at a fraction of a segment.
@@ -80,7 +69,7 @@ Extremes extremes_of_segment(const PiecewisePolynomial& curve, std::size_t segme
     if (here.value > result.greatest.value) result.greatest = here;
   };
   const auto slope = unit_polynomial(curve, segment, dimension, derivative + 1);
-  for (const double s : core::unit_roots(slope.coefficients(), 0)) consider(s);
+  for (const double s : core::unit_roots(slope.coefficients())) consider(s);
   consider(1);
   return result;
 }
@@ -93,28 +82,6 @@ Extremes extremes(const PiecewisePolynomial& curve, std::size_t dimension, int d
     if (next.greatest.value > result.greatest.value) result.greatest = next.greatest;
   }
   return result;
-}
-
-std::vector<Time> crossings(const PiecewisePolynomial& curve, std::size_t dimension, double value) {
-  require_dimension(curve, dimension);
-  std::vector<Time> times;
-  double before = 0;  // position − value at the right end of the segment before
-  for (std::size_t i = 0; i < curve.segments(); ++i) {
-    auto p = unit_polynomial(curve, i, dimension, 0);
-    const double tolerance = kRounding * (std::abs(value) + size_of(p));
-    p.values[0] -= value;
-    if (before * p.values[0] < 0) times.push_back(curve.left_of(i));
-    before = core::value_at(p.coefficients(), 1);
-    if (size_of(p) <= tolerance) {
-      times.insert(times.end(), {curve.left_of(i), curve.right_of(i)});
-      continue;
-    }
-    for (const double s : core::unit_roots(p.coefficients(), tolerance)) {
-      times.push_back(time_at(curve, i, s));
-    }
-  }
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  return times;
 }
 
 }  // namespace splinecast

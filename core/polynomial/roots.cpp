@@ -66,7 +66,7 @@ double root_between(std::span<const double> c, const End& low, const End& high) 
 Roots piece_ends(std::span<const double> c) noexcept {
   std::array<double, kMaxRootCoefficients> slopes{};
   for (std::size_t k = 1; k < c.size(); ++k) slopes[k - 1] = static_cast<double>(k) * c[k];
-  Roots ends = unit_roots(std::span(slopes).first(c.size() - 1), 0);
+  Roots ends = unit_roots(std::span(slopes).first(c.size() - 1));
   add(ends, 1);
   return ends;
 }
@@ -79,11 +79,11 @@ double value_at(std::span<const double> c, double s) noexcept {
   return value;
 }
 
-Roots unit_roots(std::span<const double> c, double tolerance) noexcept {
+Roots unit_roots(std::span<const double> c) noexcept {
   while (!c.empty() && c.back() == 0) c = c.first(c.size() - 1);
   Roots roots;
   if (c.size() < 2) return roots;
-  const auto is_root = [&](const End& end) { return std::abs(end.value) <= tolerance; };
+  const auto is_root = [](const End& end) { return end.value == 0; };
   End low{.s = 0, .value = c[0]};
   if (is_root(low)) add(roots, 0);
   for (const double s : piece_ends(c)) {

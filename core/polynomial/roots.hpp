@@ -4,12 +4,13 @@
 #include <cstddef>
 #include <span>
 
+#include "splinecast/piecewise_polynomial.hpp"
+
 /// Real roots of polynomials on the unit interval. Internal.
 namespace splinecast::core {
 
-/// Largest number of coefficients: that of the derivative of |v|² for a curve of order
-/// kMaxPolynomialOrder.
-inline constexpr std::size_t kMaxRootCoefficients = 28;
+/// Largest number of coefficients.
+inline constexpr std::size_t kMaxRootCoefficients = kMaxPolynomialOrder;
 
 /// Roots in ascending order: at most as many as the degree, and the two ends.
 struct Roots {
@@ -23,8 +24,7 @@ struct Roots {
 /// Σ c_k s^k by Horner's rule.
 [[nodiscard]] double value_at(std::span<const double> c, double s) noexcept;
 
-/// The roots of Σ c_k s^k, lowest power first, in 0 ≤ s ≤ 1; none if it is constant. At the ends of
-/// the interval and at the turning points of the polynomial, |value| ≤ tolerance counts as zero. At
+/// The roots of Σ c_k s^k, lowest power first, in 0 ≤ s ≤ 1; none if it is constant. At
 /// most kMaxRootCoefficients coefficients. Does not allocate; bounded work, O(degree³).
 ///
 /// The roots of the derivative divide the interval into pieces on which the polynomial is monotone,
@@ -32,6 +32,6 @@ struct Roots {
 /// form; above, Newton's steps inside the bracket find it. The closed forms of Cardano and Ferrari
 /// would lose digits to cancellation if the leading coefficient is small, as on every nearly
 /// straight segment, or if roots are close together; and the quintics of a full stop have none.
-[[nodiscard]] Roots unit_roots(std::span<const double> c, double tolerance) noexcept;
+[[nodiscard]] Roots unit_roots(std::span<const double> c) noexcept;
 
 }  // namespace splinecast::core

@@ -46,19 +46,23 @@ struct KnotVelocities {
 
 /// Allocates arrays that begin on a cache line.
 template <typename T>
-struct LineAllocator {
+struct CacheLineAllocator {
   using value_type = T;
-  static constexpr std::align_val_t kLine{64};
+  static constexpr std::align_val_t kCacheLine{64};
 
-  LineAllocator() = default;
+  CacheLineAllocator() = default;
   template <typename U>
-  LineAllocator(const LineAllocator<U>& /*other*/) noexcept {}  // NOLINT(*-explicit-*)
+  CacheLineAllocator(const CacheLineAllocator<U>& /*other*/) noexcept {}  // NOLINT(*-explicit-*)
 
   [[nodiscard]] T* allocate(std::size_t count) {
-    return static_cast<T*>(::operator new(count * sizeof(T), kLine));
+    return static_cast<T*>(::operator new(count * sizeof(T), kCacheLine));
   }
-  void deallocate(T* memory, std::size_t /*count*/) noexcept { ::operator delete(memory, kLine); }
-  friend bool operator==(LineAllocator /*a*/, LineAllocator /*b*/) noexcept { return true; }
+  void deallocate(T* memory, std::size_t /*count*/) noexcept {
+    ::operator delete(memory, kCacheLine);
+  }
+  friend bool operator==(CacheLineAllocator /*a*/, CacheLineAllocator /*b*/) noexcept {
+    return true;
+  }
 };
 
 /// The last knots of a curve and their elimination prefix, in a ring of fixed capacity that a
@@ -249,7 +253,7 @@ class KnotRing {
  private:
   static constexpr std::span<const double> kNone{};
   template <typename T>
-  using LineVector = std::vector<T, LineAllocator<T>>;
+  using LineVector = std::vector<T, CacheLineAllocator<T>>;
 
   void halt(std::size_t i, Interval& interval) const noexcept;
   [[nodiscard]] std::size_t offset(std::size_t i, Value which) const noexcept {

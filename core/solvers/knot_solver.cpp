@@ -6,12 +6,13 @@
 #include "core/simd/clones.hpp"
 #include "core/simd/lanes.hpp"
 #include "core/solvers/back_substitution.hpp"
+#include "core/solvers/families.hpp"
 
 namespace splinecast::core {
 
 std::unique_ptr<KnotSolver> make_knot_solver(const Interpolant& how, const Condition& start,
                                              std::size_t dimensions, Use use) {
-  return how.method->solver(how, start, dimensions, use);
+  return procedure_of(*how.method).solver(how, start, dimensions, use);
 }
 
 void solve_lone_knot(KnotRing& knots, const Condition& start) noexcept {

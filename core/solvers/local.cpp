@@ -8,14 +8,18 @@
 namespace splinecast::core {
 namespace {
 
+const SlopeRule& rule_of(const Interpolant& how) noexcept {
+  return *procedure_of(*how.method).rule;
+}
+
 /// Rows of a slope rule: with γ = 0 they need no elimination.
 class LocalSolver final : public KnotSolver {
  public:
   LocalSolver(const Interpolant& how, const Condition& start, std::size_t dimensions)
       : KnotSolver(
-            start.kind == ConditionKind::own && how.method->rule->natural_end ? Condition{} : start,
+            start.kind == ConditionKind::own && rule_of(how).natural_end ? Condition{} : start,
             dimensions),
-        rule_(how.method->rule),
+        rule_(&rule_of(how)),
         scale_(how.time_scale) {}
 
   void eliminate_again(KnotRing& knots) const noexcept override {

@@ -17,7 +17,7 @@ struct SegmentOrigin {
   std::uint32_t right_newer_knots = 0;  ///< newer knots when its right knot was last solved
   std::optional<Word> item{};           ///< of an entry: item of the run's first waypoint
   bool ends_at_waypoint = false;        ///< whether its right knot is a waypoint's
-  Word known = 0;       ///< of an entry beyond the newest waypoint: waypoints that the run had then
+  Word known = 0;       ///< of an entry ahead: number of waypoints that the run had then
   Word stopped_by = 0;  ///< of a stopper's stop: see stop_item(); else 0
 };
 

@@ -34,15 +34,15 @@ void Commanders::match_states() {
   states_ = std::move(states);
 }
 
-void Commanders::look_around(bool needs_room) {
-  if (regions_.look_around()) match_states();
-  look_for_life(needs_room);
+void Commanders::poll(bool needs_room) {
+  if (regions_.poll()) match_states();
+  check_processes(needs_room);
 }
 
 /// Looks which of those that request nothing live.
-void Commanders::look_for_life(bool needs_room) {
+void Commanders::check_processes(bool needs_room) {
   constexpr int kEvery = 50;
-  if (looks_++ % kEvery != 0 && !needs_room) return;
+  if (polls_++ % kEvery != 0 && !needs_room) return;
   for (CommanderState& state : states_) {
     if (state.requests()) continue;
     state.is_alive = owner_lives(regions_.stream_of(state.name), RegionKind::commander);

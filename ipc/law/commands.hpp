@@ -47,18 +47,18 @@ struct CommanderState {
 class Commanders {
  public:
   /// `watch` knows the names of the commanders; it outlives this object, and its owner calls its
-  /// look().
+  /// poll().
   Commanders(std::string law, const Trust& trust, const RegionWatch& watch)
       : regions_(std::move(law), RegionKind::commander, trust, watch.commanders()) {}
 
-  /// Whether a commander of any law has come or gone since the last look_around(), or has not been
+  /// Whether a commander of any law has come or gone since the last poll(), or has not been
   /// opened yet. One load.
   [[nodiscard]] bool has_news() const noexcept { return regions_.has_untried(); }
 
   /// Opens the regions of commanders that have come: see RequestRegions. In one of 50 calls, and if
   /// `needs_room`, some system calls for each commander that requests nothing, to see whether its
   /// process lives.
-  void look_around(bool needs_room = false);
+  void poll(bool needs_room = false);
 
   [[nodiscard]] bool empty() const noexcept { return states_.empty(); }
 
@@ -88,11 +88,11 @@ class Commanders {
   static constexpr Time kMostDamaged{20'000'000};
 
   void match_states();
-  void look_for_life(bool needs_room);
+  void check_processes(bool needs_room);
   static void read_newest(RequestRegions::Source& source, CommanderState& state, Time now) noexcept;
 
   RequestRegions regions_;
-  int looks_ = 0;                       ///< calls of look_around()
+  int polls_ = 0;                       ///< calls of poll()
   std::vector<CommanderState> states_;  ///< of each region
 };
 

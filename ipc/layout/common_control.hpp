@@ -25,6 +25,7 @@ inline constexpr std::size_t kControlPositions =
     (kBodyOffset - kHeaderBytes - kBoardControlWords * sizeof(Word)) / kSeparation + 1;
 static_assert(kRingControlWords <= kBoardControlWords);
 static_assert(kCommanderControlWords <= kBoardControlWords);
-static_assert(kStopperControlWords == kCommanderControlWords && kStopperControlWords == kLineWords);
+static_assert(kStopperControlWords == kCommanderControlWords &&
+              kStopperControlWords == kSeparationWords);
 
 }  // namespace splinecast::ipc

@@ -35,7 +35,7 @@ inline constexpr std::tuple kCommanderControlRows{
              FieldWriter::owner,
              "ns: the law holds if the request is not renewed for this long; 0: never"},
     FieldRow{"dead-man ramp", {.words = 1}, FieldWriter::owner, "ns: length of the ramp to that"},
-    padding(kLineWords - 8)};
+    padding(kSeparationWords - 8)};
 inline constexpr auto kCommanderControlFields = place(kCommanderControlRows);
 inline constexpr std::size_t kCommanderControlWords = size_of(kCommanderControlFields).words;
 inline constexpr std::size_t kCommanderSequence = word_of(kCommanderControlFields, "sequence");
@@ -99,7 +99,7 @@ inline constexpr std::tuple kStopperControlRows{
              {.words = 1},
              FieldWriter::owner,
              "1: the stream is to stop, and to stay; 0: released. All else counts as 1"},
-    padding(kLineWords - 5)};
+    padding(kSeparationWords - 5)};
 inline constexpr auto kStopperControlFields = place(kStopperControlRows);
 inline constexpr std::size_t kStopperControlWords = size_of(kStopperControlFields).words;
 inline constexpr std::size_t kStopperSequence = word_of(kStopperControlFields, "sequence");

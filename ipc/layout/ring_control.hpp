@@ -21,7 +21,7 @@ inline constexpr std::tuple kRingControlRows{
              {.words = 1},
              FieldWriter::owner,
              "what `written` is after the last replacement; stored before its items are written"},
-    padding(kLineWords - 3),
+    padding(kSeparationWords - 3),
     FieldRow{"refused",
              {.words = kProducerRefusals},
              FieldWriter::owner,

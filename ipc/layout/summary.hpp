@@ -23,7 +23,7 @@ enum class Course : std::uint8_t {
   on_target = 0,  ///< the curve follows the target
   waiting = 1,    ///< it ends in a stop away from the target: no entry has been found
   entering = 2,   ///< an entry ends at a waypoint of the run, and the target follows
-  beyond = 3,     ///< an entry ends beyond the newest waypoint, and a stop follows
+  ahead = 3,      ///< an entry ends ahead of the newest waypoint, and a stop follows
   starting = 4,   ///< it rests at the first waypoint: the start is not decided yet
 };
 inline constexpr int kCourses = 5;

@@ -36,7 +36,7 @@ RegionWatch::RegionWatch() : events_(OwnedDescriptor::event_queue()) {
   if (!is_watched) events_ = {};
 }
 
-void RegionWatch::look() {
+void RegionWatch::poll() {
   take_events();
   const MonotonicClock clock;
   const Time now = clock.now();

@@ -34,7 +34,7 @@ class Requesters {
 };
 
 /// Which streams, commanders and stoppers have a region, kept up to date by the kernel's events of
-/// the shared memory folder (inotify): one that comes is known at the next look(), for any number
+/// the shared memory folder (inotify): one that comes is known at the next poll(), for any number
 /// of other files. Without inotify, as when the user has no event queue left, by the folder's
 /// modification time, within 20 ms or 20 times what it takes to read the folder. Once a second that
 /// time is compared with the events, too, in case none arrive. One thread uses it.
@@ -46,7 +46,7 @@ class RegionWatch {
   /// system call per 4 kB of names. Reads the folder at the first call, and if events are missing;
   /// without inotify if any file has come or gone. Throws OutOfResources if the folder cannot be
   /// read: the next call tries again.
-  void look();
+  void poll();
 
   /// Differs from its earlier value once a file of a region, or of a lock, has come or gone.
   [[nodiscard]] Word version() const noexcept { return version_; }

@@ -52,11 +52,12 @@ inline void store(Word& word, Word value, std::memory_order order) noexcept {
   return Time(static_cast<std::int64_t>(word));
 }
 
+inline constexpr std::size_t kCacheLine = 64;
+
 /// Prefetches the cache lines of a memory range. Loads nothing.
 inline void prefetch_lines(const void* from, std::size_t bytes) noexcept {
-  constexpr std::size_t kLine = 64;
   const auto* const first = static_cast<const std::byte*>(from);
-  for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(first + at);
+  for (std::size_t at = 0; at < bytes; at += kCacheLine) __builtin_prefetch(first + at);
 }
 
 /// Calls `copy(to[i], from[i])` for each i < n ≤ 8, with one jump.

@@ -41,7 +41,7 @@ OwnedRequest::OwnedRequest(Region mapped, const RegionHeader& header)
     : region(std::move(mapped)),
       lock(region.descriptor()),
       id(header.stream_id),
-      control(words_at(region.bytes(), header.control, kLineWords)) {}
+      control(words_at(region.bytes(), header.control, kSeparationWords)) {}
 
 OwnedRequest own_request(const std::string& name, RegionKind kind, const RegionAccess& access,
                          const Trust& trust, OwnerLock& lock) {

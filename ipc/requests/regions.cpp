@@ -46,7 +46,7 @@ std::optional<RequestRegions::Unusable> RequestRegions::open(const std::string& 
     auto [region, header, layout] = open_request(stream, kind_, false, trust_);
     require_same_clock(header, stream);
     region.close_descriptor();
-    const auto control = words_at(region.bytes(), layout.control, kLineWords);
+    const auto control = words_at(region.bytes(), layout.control, kSeparationWords);
     sources_.push_back(
         {.name = name, .id = header.stream_id, .region = std::move(region), .control = control});
   } catch (const NoSuchStream&) {
@@ -73,7 +73,7 @@ void RequestRegions::find_untried() {
   std::ranges::reverse(untried_);
 }
 
-bool RequestRegions::look_around() {
+bool RequestRegions::poll() {
   const bool has_dropped = drop_gone();
   if (has_news()) find_untried();
   seen_ = known_->version();

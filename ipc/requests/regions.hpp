@@ -38,11 +38,11 @@ class RequestRegions {
   /// it up to date.
   RequestRegions(std::string of, RegionKind kind, const Trust& trust, const Requesters& known);
 
-  /// Whether one has come or gone since the last look_around(). One load.
+  /// Whether one has come or gone since the last poll(). One load.
   [[nodiscard]] bool has_news() const noexcept { return known_->version() != seen_; }
-  /// Whether look_around() would open one that it has not tried yet.
+  /// Whether poll() would open one that it has not tried yet.
   [[nodiscard]] bool has_untried() const noexcept { return has_news() || !untried_.empty(); }
-  /// The word that changes with news, and its value at the last look_around().
+  /// The word that changes with news, and its value at the last poll().
   [[nodiscard]] const Word* news() const noexcept { return &known_->version(); }
   [[nodiscard]] Word seen_news() const noexcept { return seen_; }
 
@@ -51,14 +51,14 @@ class RequestRegions {
   /// that has the clock of another time namespace, is tried again. Tries at most kTries in one
   /// call, new ones first: any user may create files with such names. Returns whether sources() has
   /// changed.
-  bool look_around();
+  bool poll();
   static constexpr std::size_t kTries = 64;
   static constexpr std::size_t kReported = 16;
 
   [[nodiscard]] std::span<Source> sources() noexcept { return sources_; }
   [[nodiscard]] std::span<const Source> sources() const noexcept { return sources_; }
 
-  /// Those that look_around() has found and could not use.
+  /// Those that poll() has found and could not use.
   [[nodiscard]] const std::vector<Unusable>& unusable() const noexcept { return unusable_; }
   /// The first of them, for messages: any user may create files with such names.
   [[nodiscard]] std::span<const Unusable> reported() const noexcept {
@@ -82,7 +82,7 @@ class RequestRegions {
   RegionKind kind_;
   Trust trust_;
   const Requesters* known_;
-  Word seen_ = 0;  ///< version of `known_` at the last look_around()
+  Word seen_ = 0;  ///< version of `known_` at the last poll()
   std::vector<Source> sources_;
   std::vector<std::string> untried_;  ///< names that are to be opened
   std::vector<Unusable> unusable_;

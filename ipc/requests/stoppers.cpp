@@ -21,14 +21,14 @@ std::optional<StopRequest> stop_request_of(
   return is_valid ? std::optional(request) : std::nullopt;
 }
 
-void Stoppers::look_around(Time now) {
-  constexpr Time kLookEvery = std::chrono::milliseconds(20);
-  const bool is_early = now < next_look_ && now >= next_look_ - kLookEvery;
+void Stoppers::poll(Time now) {
+  constexpr Time kPollInterval = std::chrono::milliseconds(20);
+  const bool is_early = now < next_poll_ && now >= next_poll_ - kPollInterval;
   if (is_early && !regions_.has_untried()) return;
-  next_look_ = now + kLookEvery;
+  next_poll_ = now + kPollInterval;
   if (!states_.empty() || !regions_.unusable().empty()) note_faults();
   const bool had_unread = std::ranges::any_of(states_, [](const auto& s) { return s.id == 0; });
-  const bool has_changed = regions_.look_around();
+  const bool has_changed = regions_.poll();
   const auto& unusable = regions_.unusable();
   const bool has_unread = std::ranges::any_of(unusable, &RequestRegions::Unusable::is_unread);
   if (!has_changed && !had_unread && !has_unread) return;

@@ -57,7 +57,7 @@ class StopRequests {
 /// The stoppers of one stream, by their regions. One thread uses it.
 class Stoppers : public StopRequests {
  public:
-  /// `watch` knows their names; it outlives this object, and its owner calls its look().
+  /// `watch` knows their names; it outlives this object, and its owner calls its poll().
   Stoppers(std::string stream, const Trust& trust, const RegionWatch& watch)
       : regions_(std::move(stream), RegionKind::stopper, trust, watch.stoppers()) {}
 
@@ -65,7 +65,7 @@ class Stoppers : public StopRequests {
   /// looks every 20 ms for retired ones, and tries again those that could not be used. A stopper
   /// whose region cannot be opened for lack of memory or descriptors holds the stream until it can
   /// be read. `now` is of the host's clock.
-  void look_around(Time now);
+  void poll(Time now);
 
   /// A request that is torn or not valid counts as one to stop: a writer that is stopped while it
   /// stores one changes from or to that.
@@ -86,7 +86,7 @@ class Stoppers : public StopRequests {
   std::vector<StopperState> states_;  ///< of each region, then of those that could not be opened
   RequestFaults faults_;
   bool was_held_ = false;  ///< a stopper has held the stream
-  Time next_look_ = Time::min();
+  Time next_poll_ = Time::min();
 };
 
 }  // namespace splinecast::ipc

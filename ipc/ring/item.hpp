@@ -62,7 +62,7 @@ struct RingItem {
 /// time. A late waypoint becomes part of the target, to which an entry returns, but is itself
 /// passed over. After this time, the straight line that extrapolates from the previous waypoint has
 /// ended.
-inline constexpr Time kMostLate = core::Extrapolation::kLine;
+inline constexpr Time kMostLate = core::Extrapolation::kLineLength;
 static_assert(kMostLate == Time{250'000'000});  // as Refusal::past says
 
 /// The interval allowed between two consecutive waypoints.

@@ -32,7 +32,7 @@ struct Internals {
   [[nodiscard]] static Producer producer(std::string stream, ProducerOptions options,
                                          const Clock& clock);
 
-  /// The solver uses this watch, which outlives it and whose owner calls its look() before each
+  /// The solver uses this watch, which outlives it and whose owner calls its poll() before each
   /// step, instead of one of its own.
   static void share(Solver& solver, const RegionWatch& watch) noexcept;
 

@@ -15,14 +15,14 @@
 namespace splinecast::ipc {
 namespace {
 
-constexpr Time kLookEvery = std::chrono::milliseconds(20);
+constexpr Time kPollInterval = std::chrono::milliseconds(20);
 
 /// A law begins this long after its ring has been made: its solver must publish it before.
 constexpr Time kNotice = std::chrono::milliseconds(20);
 
 /// Accelerations beyond any ramp. With this limit an entry is not compared with the motion that the
 /// law has shown, and ends at the first waypoint after it.
-constexpr double kBeyondAnyRamp = 1e12;
+constexpr double kAboveAnyRamp = 1e12;
 
 void describe_law(RegionHeader& header) {
   header.is_law = 1;
@@ -46,7 +46,7 @@ bool LawServer::is_wanted(const std::string& law, const RegionWatch& watch) {
 
 SolverOptions LawServer::solver_options(const SolverOptions& options) {
   return {.method = find_method("quintic"),
-          .limits = MotionLimits{.acceleration = {kBeyondAnyRamp}},
+          .limits = MotionLimits{.acceleration = {kAboveAnyRamp}},
           .freeze_ahead = options.freeze_ahead,
           .history = options.history,
           .min_entry = Time(1),
@@ -66,7 +66,7 @@ LawServer::LawServer(const std::string& law, const SolverOptions& options, const
       commanders_(law, options.trust, watch),
       rate_(max_rate(ring_.header)) {
   lock_.keep_file();
-  commanders_.look_around();
+  commanders_.poll();
 }
 
 void LawServer::attach(const KnotBoardReader& board, const RegionHeader& header) {
@@ -135,9 +135,9 @@ void LawServer::judge_sent() noexcept {
   sent_.reset();
 }
 
-void LawServer::look_around(const Clock& clock) {
+void LawServer::poll(const Clock& clock) {
   const Time now = clock.now();
-  if (now < next_look_ && !commanders_.has_news()) return;
+  if (now < next_poll_ && !commanders_.has_news()) return;
   // The table may be full of commanders whose processes have just ended.
   const bool needs_room =
       is_rate_known_ && std::ranges::any_of(commanders_.states(), [&](const auto& state) {
@@ -145,8 +145,8 @@ void LawServer::look_around(const Clock& clock) {
       });
   // Before a new commander is read, which the next plan makes known.
   if (is_rate_known_) faults_.set(faults_of(commanders_, rate_, max_rate(ring_.header)));
-  commanders_.look_around(needs_room);
-  next_look_ = now + kLookEvery;
+  commanders_.poll(needs_room);
+  next_poll_ = now + kPollInterval;
 }
 
 LawPlan LawServer::plan(Time now, Time settled) noexcept {
@@ -179,6 +179,6 @@ void LawServer::take_over(const core::LawState& state) noexcept {
   is_rate_known_ = true;
 }
 
-Time LawServer::due() const noexcept { return std::min(next_look_, commanders_.next_expiry()); }
+Time LawServer::due() const noexcept { return std::min(next_poll_, commanders_.next_expiry()); }
 
 }  // namespace splinecast::ipc

@@ -39,7 +39,7 @@ class LawServer : public LawPlanner {
   [[nodiscard]] static bool is_wanted(const std::string& law, const RegionWatch& watch);
 
   /// Becomes the producer of the law: continues its ring or creates one, whose origin is the
-  /// present. `watch` outlives this object; its owner calls its look() before each step. Throws as
+  /// present. `watch` outlives this object; its owner calls its poll() before each step. Throws as
   /// the constructor of Producer does.
   LawServer(const std::string& law, const SolverOptions& options, const RegionWatch& watch);
 
@@ -52,7 +52,7 @@ class LawServer : public LawPlanner {
   /// Opens new commanders' regions when the watch knows them, and looks every 20 ms for those that
   /// are gone or cannot be used, with system calls. Call it before the solver's step. `clock` is
   /// the host's.
-  void look_around(const Clock& clock);
+  void poll(const Clock& clock);
 
   /// Appends the items that the commands require now: see LawPlanner. Requires attach().
   LawPlan plan(Time now, Time settled) noexcept override;
@@ -83,7 +83,7 @@ class LawServer : public LawPlanner {
   const KnotBoardReader* board_ = nullptr;
   std::optional<Sampler> sampler_;
   Time freeze_ahead_{};
-  Time next_look_ = Time::min();
+  Time next_poll_ = Time::min();
   State state_{1};
   CommandedRate rate_;
   bool is_rate_known_ = false;  ///< rate_ is that of the board, with the line that ends there:

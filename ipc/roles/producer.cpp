@@ -82,7 +82,7 @@ struct Producer::Impl {
       law = std::make_unique<ipc::LawFollower>(ring.header, options.trust);
       law_clock = std::make_unique<ipc::LawClock>(*law, *clock);
     }
-    if (continues) look_for_solver();
+    if (continues) find_solver();
     if (solver) refused.skip(solver->reader);
   }
 
@@ -104,7 +104,7 @@ struct Producer::Impl {
 
   /// Opens the solver's region of this stream, unless it is already open. Closes a retired one.
   /// Leaves `solver` empty if there is no usable region.
-  void look_for_solver() noexcept {
+  void find_solver() noexcept {
     if (solver && !solver->reader.retired()) return;
     planner.reset();
     solver.reset();
@@ -126,8 +126,8 @@ struct Producer::Impl {
   }
 
   /// What is known of the solver's state. If its region is not open, tries to open it.
-  [[nodiscard]] ipc::WaypointRingWriter::Solved look_at_solver() noexcept {
-    if (!solver) look_for_solver();
+  [[nodiscard]] ipc::WaypointRingWriter::Solved read_solver() noexcept {
+    if (!solver) find_solver();
     ipc::WaypointRingWriter::Solved known{.consumed = consumed()};
     if (ipc::stream_clock(ring.header) == StreamClock::recorded) return known;
     known.clock = &stream_clock();
@@ -160,7 +160,7 @@ struct Producer::Impl {
   }
 
   AppendStatus append(const Waypoint& waypoint) noexcept {
-    const auto known = look_at_solver();
+    const auto known = read_solver();
     if (start.is_open()) return start.append(waypoint, ring.writer, known, board_header());
     const bool has_curve = known.clock != nullptr && solver && known.settled_until > Time::min();
     const ipc::Word item = ring.writer.written();
@@ -182,7 +182,7 @@ struct Producer::Impl {
   }
 
   AppendStatus replace_from(Time t, const ipc::ReplacementPath& path, Time blend) noexcept {
-    const auto known = look_at_solver();
+    const auto known = read_solver();
     const bool begins = start.is_open();
     const AppendStatus status = wake_solver_for(
         begins ? start.replace_from(t, path, blend, ring.writer, known, board_header())
@@ -199,7 +199,7 @@ struct Producer::Impl {
     const ipc::Word end = ring.writer.written();
     if (status == AppendStatus::accepted && end >= items) last_item = end - items;
     // Looks again after the store: a solver that attached meanwhile may already sleep.
-    if (!solver) look_for_solver();
+    if (!solver) find_solver();
     if (status == AppendStatus::accepted && solver && solver->reader.sleeping()) {
       ipc::wake_all(ring.writer.written_word());
       (void)ring.lock.hold();
@@ -213,7 +213,7 @@ struct Producer::Impl {
   bool wait(Time timeout, const Done& done) {
     const Time end = deadline(kClock, timeout);
     for (;;) {
-      look_for_solver();
+      find_solver();
       (void)ring.lock.hold();
       const ipc::Word seen = solver ? solver->reader.revision() : 0;
       if (done()) return true;
@@ -257,7 +257,7 @@ ReplacePreview Producer::preview_replace(Time t, std::span<const Waypoint> waypo
 
 void Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
                                const ReplaceOptions& options, ReplacePreview& out) {
-  const auto known = impl_->look_at_solver();
+  const auto known = impl_->read_solver();
   out.status = impl_->ring.writer.check_replacement(t, waypoints, known, options.blend);
   out.is_known = false;
   if (out.status != AppendStatus::accepted || !impl_->solver) return;
@@ -278,28 +278,28 @@ void Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
 }
 
 std::optional<ReplacementBegin> Producer::replacement_begin() {
-  impl_->look_for_solver();
+  impl_->find_solver();
   if (!impl_->replacement || impl_->consumed() <= *impl_->replacement) return std::nullopt;
   return ipc::begin_of_run(impl_->solver->reader, *impl_->replacement);
 }
 
 AppendStatus Producer::start_from(const Instant& state, const StartOptions& options) noexcept {
   return impl_->wake_solver_for(
-      impl_->start.start_from(state, options, impl_->ring.writer, impl_->look_at_solver()));
+      impl_->start.start_from(state, options, impl_->ring.writer, impl_->read_solver()));
 }
 
 Instant Producer::old_end() noexcept {
   if (!impl_->start.is_open() || !impl_->start.look()) return {};
-  return impl_->start.state(impl_->look_at_solver());
+  return impl_->start.state(impl_->read_solver());
 }
 
 std::string Producer::why_elsewhere(const Waypoint& first) {
   if (!impl_->start.is_open()) return {};
-  return impl_->start.why_elsewhere(first, impl_->look_at_solver(), impl_->board_header());
+  return impl_->start.why_elsewhere(first, impl_->read_solver(), impl_->board_header());
 }
 
 std::vector<std::string> Producer::stopped_by() {
-  impl_->look_for_solver();
+  impl_->find_solver();
   return impl_->solver ? ipc::holders_of(impl_->solver->reader) : std::vector<std::string>{};
 }
 
@@ -309,7 +309,7 @@ Time Producer::now() noexcept {
 }
 
 Time Producer::earliest() noexcept {
-  const auto known = impl_->look_at_solver();
+  const auto known = impl_->read_solver();
   const Time earliest = ipc::WaypointRingWriter::earliest_replacement(known);
   // What a law holds begins at rest where it holds it, at once.
   const bool is_exact = known.clock == nullptr || known.clock->held();
@@ -327,7 +327,7 @@ AppendStatus Producer::finish(const Condition& end) {
     throw BadRequest("end condition '" + to_string(end) +
                      "' is not at rest: a live stream ends with clamped or halt");
   }
-  return impl_->wake_solver_for(impl_->ring.writer.finish(end, impl_->look_at_solver()));
+  return impl_->wake_solver_for(impl_->ring.writer.finish(end, impl_->read_solver()));
 }
 
 Refusals Producer::refusals() {
@@ -336,7 +336,7 @@ Refusals Producer::refusals() {
 }
 
 void Producer::refusals(Refusals& out) {
-  impl_->look_for_solver();
+  impl_->find_solver();
   out.items.clear();
   out.missed = out.consumed = 0;
   if (impl_->solver) impl_->refused.look(impl_->solver->reader, impl_->sent, out);
@@ -345,7 +345,7 @@ void Producer::refusals(Refusals& out) {
 std::uint64_t Producer::last_item() const noexcept { return impl_->last_item; }
 
 ItemOutcome Producer::outcome(std::uint64_t item) noexcept {
-  impl_->look_for_solver();
+  impl_->find_solver();
   return impl_->solver ? ipc::outcome_of(impl_->solver->reader, impl_->sent, item) : ItemOutcome{};
 }
 

@@ -105,7 +105,7 @@ void remove_regions(const std::string& stream, std::span<const RegionKind> kinds
 bool is_released(const std::string& region, const Trust& trust) {
   if (is_owned(region, RegionKind::stopper)) return false;
   const auto opened = open_request(region, RegionKind::stopper, false, trust);
-  const auto control = words_at(opened.region.bytes(), opened.layout.control, kLineWords);
+  const auto control = words_at(opened.region.bytes(), opened.layout.control, kSeparationWords);
   std::array<Word, kStopperRecordWords> words{};
   const RecordCopy copy = copy_record(control, words);
   const auto request = copy.is_whole ? stop_request_of(words) : std::nullopt;

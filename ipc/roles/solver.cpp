@@ -40,7 +40,7 @@ constexpr Time kPoll = std::chrono::milliseconds(5);
 constexpr Time kSliceOfStopped = std::chrono::milliseconds(5);
 
 /// How often a solver that does not sleep looks for new stoppers, by a coarse clock (4 ms).
-constexpr Time kLookEvery = std::chrono::milliseconds(1);
+constexpr Time kPollInterval = std::chrono::milliseconds(1);
 
 /// How often the solver of a stream whose law holds looks at the law.
 constexpr Time kHeldPoll = std::chrono::milliseconds(5);
@@ -94,7 +94,7 @@ struct Solver::Impl {
   std::unique_ptr<ipc::RegionWatch> own_watch;  ///< ends after the lock
   ipc::OwnerLock lock;
   const ipc::RegionWatch* watch = nullptr;  ///< of this object, or of its caller
-  Time next_look = Time::min();             ///< of own_watch; min(): at once
+  Time next_poll = Time::min();             ///< of own_watch; min(): at once
   std::unique_ptr<ipc::LawServer> server;   ///< if the stream is a law
   std::unique_ptr<Attachment> attachment;
   Time next_attach = Time::min();
@@ -123,34 +123,34 @@ struct Solver::Impl {
       const auto peeked = ipc::peek_header(stream, ipc::RegionKind::waypoints, options.trust);
       if (!peeked || peeked->is_law == 0) return true;
     }
-    look();
+    poll_watch();
     if (!ipc::LawServer::is_wanted(stream, *watch)) return has_ring;
     server = std::make_unique<ipc::LawServer>(stream, options, *watch);
     return true;
   }
 
-  void look() {
+  void poll_watch() {
     if (watch == nullptr) {
       own_watch = std::make_unique<ipc::RegionWatch>();
       watch = own_watch.get();
     }
-    if (own_watch) own_watch->look();
+    if (own_watch) own_watch->poll();
   }
 
   /// Whether wait() looks for new stoppers instead of step(), which makes no system call then.
-  [[nodiscard]] bool looks_in_wait() const noexcept { return own_watch && !options.wake; }
+  [[nodiscard]] bool polls_in_wait() const noexcept { return own_watch && !options.wake; }
 
-  /// The same for the stoppers of the stream, at most every kLookEvery while the solver does not
+  /// The same for the stoppers of the stream, at most every kPollInterval while the solver does not
   /// sleep. If that fails, the next call tries again: the curve continues.
-  void look_for_stoppers(Time now) noexcept {
+  void poll_stoppers(Time now) noexcept {
     try {
-      if (own_watch && (now >= next_look || now < next_look - kLookEvery)) {
-        next_look = now + kLookEvery;
-        own_watch->look();
+      if (own_watch && (now >= next_poll || now < next_poll - kPollInterval)) {
+        next_poll = now + kPollInterval;
+        own_watch->poll();
       }
-      attachment->stoppers->look_around(now);
+      attachment->stoppers->poll(now);
     } catch (const std::exception&) {
-      next_look = Time::min();
+      next_poll = Time::min();
     }
   }
 
@@ -172,9 +172,9 @@ struct Solver::Impl {
   std::unique_ptr<ipc::Stoppers> find_stoppers(const ipc::RegionHeader& header,
                                                const Clock& clock) {
     if (server || !is_live(ipc::stream_clock(header))) return nullptr;
-    look();
+    poll_watch();
     auto stoppers = std::make_unique<ipc::Stoppers>(stream, options.trust, *watch);
-    stoppers->look_around(clock.now());
+    stoppers->poll(clock.now());
     return stoppers;
   }
 
@@ -240,10 +240,10 @@ StepResult Solver::step(const Clock& clock) {
   if (!attached()) return {};
   Attachment& at = *impl_->attachment;
   if (impl_->server) {
-    impl_->look();
-    impl_->server->look_around(clock);
-  } else if (at.stoppers && !impl_->looks_in_wait()) {
-    impl_->look_for_stoppers(clock.about_now());
+    impl_->poll_watch();
+    impl_->server->poll(clock);
+  } else if (at.stoppers && !impl_->polls_in_wait()) {
+    impl_->poll_stoppers(clock.about_now());
   }
   const StepResult result = at.step(clock);
   if (result.damaged) {
@@ -277,7 +277,7 @@ void Solver::wait(Time timeout) noexcept {
   }
   Attachment& at = *impl_->attachment;
   (void)at.board.lock.hold();
-  if (at.stoppers && impl_->looks_in_wait()) impl_->look_for_stoppers(MonotonicClock().now());
+  if (at.stoppers && impl_->polls_in_wait()) impl_->poll_stoppers(MonotonicClock().now());
   if (timeout <= Time::zero()) return;
   // The store and the load are seq_cst, as are the producer's store of its written position and its
   // load of sleeping: either this load sees the new position, or the producer sees that this solver
@@ -291,7 +291,7 @@ void Solver::wait(Time timeout) noexcept {
     const Time most = std::min({timeout, slice, due - now});
     if (!impl_->server) {
       ipc::wait_while_equal(at.ring.reader.written_word(), written, most);
-      impl_->next_look = Time::min();
+      impl_->next_poll = Time::min();
     } else {
       impl_->server->commanders().wait(most);
     }

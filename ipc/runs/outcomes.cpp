@@ -69,7 +69,7 @@ void Outcomes::take_out(Word first, Word end, OutcomeKind kind) noexcept {
 
 void Outcomes::advance(const RunProgress& now) noexcept {
   const Word begin = index_of(now, 0);
-  if (!run_.is_on_line() && now.unmet > run_.unmet) {
+  if (!run_.is_interpolated() && now.unmet > run_.unmet) {
     take_out(begin + run_.unmet, begin + now.unmet - 1, OutcomeKind::passed_over);
     meet(now, now.unmet - 1);
   }
@@ -149,11 +149,11 @@ void Outcomes::end(const RunProgress& now, const RunEnd& how) noexcept {
   const Word begin = index_of(now, 0);
   const Word last = now.knots - 1;
   if (how.kind == EndKind::slowed) (void)note_at_end(now, 0, how.rest);
-  if (how.kind == EndKind::in_stop && !now.is_on_line()) {
+  if (how.kind == EndKind::in_stop && !now.is_interpolated()) {
     take_out(begin + now.unmet, accepted_, OutcomeKind::passed_over);
   }
   const bool enters = how.kind == EndKind::entered;
-  if (!enters && (how.kind != EndKind::as_requested || now.is_on_line())) return;
+  if (!enters && (how.kind != EndKind::as_requested || now.is_interpolated())) return;
   take_out(begin + now.unmet, begin + last, OutcomeKind::passed_over);
   if (now.unmet > last) return;
   // A curve that rested there before the end was requested may have come after the waypoint's time.

@@ -18,13 +18,13 @@ struct RunProgress {
   Word knots = 0;
   Word met = 0;
   Word unmet = 0;
-  Word goal = 0;  ///< the open entry ends beyond, at the waypoint before this one; 0: at none
+  Word goal = 0;  ///< the open entry ends ahead, at the waypoint before this one; 0: at none
 
-  [[nodiscard]] bool is_on_line() const noexcept {
+  [[nodiscard]] bool is_interpolated() const noexcept {
     return course == Course::on_target || course == Course::entering;
   }
   /// Number of leading waypoints that the curve meets or has passed over.
-  [[nodiscard]] Word decided() const noexcept { return is_on_line() ? knots : unmet; }
+  [[nodiscard]] Word decided() const noexcept { return is_interpolated() ? knots : unmet; }
 };
 
 /// How a finished curve ends.

@@ -5,7 +5,8 @@
 #include "core/limits/check.hpp"
 #include "ipc/solve/stream_solver.hpp"
 
-/// Takes or refuses the items of a ring, and records their outcomes; begins the stops of stoppers.
+/// Accepts or refuses the items of a ring, and records their outcomes; begins the stops of
+/// stoppers.
 namespace splinecast::ipc {
 namespace {
 
@@ -25,7 +26,7 @@ Refusal to_refusal(AppendStatus interval) noexcept {
 
 }  // namespace
 
-void StreamSolver::take(Word number) noexcept {
+void StreamSolver::handle(Word number) noexcept {
   if (summary_.finished) return refuse(number, Refusal::after_finish);
   if (is_held() && moves(item_)) {
     return item_.kind == ItemKind::replace ? refuse_replacement(number, Refusal::stopped)
@@ -37,15 +38,15 @@ void StreamSolver::take(Word number) noexcept {
   }
   switch (item_.kind) {
     case ItemKind::waypoint:
-      return take_waypoint(number);
+      return handle_waypoint(number);
     case ItemKind::replace:
-      return take_replacement(number);
+      return handle_replacement(number);
     case ItemKind::start_state:
-      return take_start_state(number);
+      return handle_start_state(number);
     case ItemKind::finish:
-      return take_finish(number);
+      return handle_finish(number);
     case ItemKind::rate:
-      return take_plan(number);
+      return handle_plan(number);
   }
   refuse(number, Refusal::unknown_kind);
 }
@@ -145,7 +146,7 @@ std::optional<Refusal> StreamSolver::time_refusal(Time time) const noexcept {
   return curve_.window().lag_suffices(time) ? std::nullopt : std::optional(Refusal::lag_too_short);
 }
 
-void StreamSolver::take_waypoint(Word number) noexcept {
+void StreamSolver::handle_waypoint(Word number) noexcept {
   Waypoint waypoint = item_.waypoint();
   if (const auto refusal = form_refusal(waypoint)) return refuse(number, *refusal);
   if (const auto refusal = time_refusal(waypoint.time)) return refuse(number, *refusal);
@@ -203,7 +204,7 @@ void StreamSolver::count_excess(std::optional<LimitExcess> excess, Word number,
   }
 }
 
-void StreamSolver::take_replacement(Word number) noexcept {
+void StreamSolver::handle_replacement(Word number) noexcept {
   // A replacement is never too late. A stop is a revision of its own, which is committed sooner
   // than a full batch.
   const bool rests = can_rest() && begins_at_rest(item_.time, *step_.held_from, step_.settled_until,
@@ -244,7 +245,7 @@ void StreamSolver::refuse_replacement(Word number, Refusal reason) noexcept {
 
 /// Takes the pieces of a law's plan, which the planner has appended in this step. The state at the
 /// cut determines the curve through them.
-void StreamSolver::take_plan(Word number) noexcept {
+void StreamSolver::handle_plan(Word number) noexcept {
   const Time t = item_.time;
   const Word pieces = Word{1} + item_.count;
   core::RateCurve plan(t, {});
@@ -297,7 +298,7 @@ std::optional<Refusal> StreamSolver::read_plan(Word number, core::RateCurve& pla
   return is_in_range ? std::nullopt : std::optional(Refusal::too_far_apart);
 }
 
-void StreamSolver::take_start_state(Word number) noexcept {
+void StreamSolver::handle_start_state(Word number) noexcept {
   const Waypoint state = item_.waypoint();
   if (curve_.has_begun()) return refuse(number, Refusal::already_started);
   if (!is_finite(state)) return refuse(number, Refusal::not_finite);
@@ -317,7 +318,7 @@ void StreamSolver::take_start_state(Word number) noexcept {
   summary_.newest_time = begin;
 }
 
-void StreamSolver::take_finish(Word number) noexcept {
+void StreamSolver::handle_finish(Word number) noexcept {
   end_.kind = item_.condition;
   end_.value.clear();
   const std::size_t dimensions = ring_->dimensions();

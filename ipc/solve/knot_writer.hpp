@@ -25,7 +25,7 @@ static_assert(std::variant_size_v<core::End> == kCourses);
 static_assert(course_of(core::OnTarget{}) == Course::on_target);
 static_assert(course_of(core::Waiting{}) == Course::waiting);
 static_assert(course_of(core::Entering{}) == Course::entering);
-static_assert(course_of(core::EnteringAhead{}) == Course::beyond);
+static_assert(course_of(core::EnteringAhead{}) == Course::ahead);
 static_assert(course_of(core::Starting{}) == Course::starting);
 
 /// The knot of a plan's origin.

@@ -36,7 +36,7 @@ core::End end_of(Course course) noexcept {
       return core::Waiting{};
     case Course::entering:
       return core::Entering{};
-    case Course::beyond:
+    case Course::ahead:
       return core::EnteringAhead{};
     case Course::starting:
       return core::Starting{};
@@ -143,9 +143,9 @@ bool PlanReader::read_knots() noexcept {
   const std::size_t size = kKnotValues * published_->dimensions();
   const std::size_t end = knots_.size();
   const std::size_t most = std::min<std::size_t>(summary_.run_knots, end);
-  for (Word line = summary_.newest; count_ < most; ++count_) {
+  for (Word number = summary_.newest; count_ < most; ++count_) {
     const std::size_t i = summary_.run_knots - 1 - count_;
-    const auto is_there = find_knot(i, line);
+    const auto is_there = find_knot(i, number);
     if (!is_there) return false;
     // Knots that the open entry does not need may no longer be on the board.
     if (!*is_there) return i + KnotWriter::kMetKept < state_.unmet;
@@ -187,23 +187,23 @@ core::Knot PlanReader::to_knot(std::span<double> values) noexcept {
 
 /// Reads knot i of the run, and returns whether the board has it; nothing if the board is damaged.
 /// Call it from the newest knot backwards. Searches both places where the knot may be: the numbered
-/// slots, where it is the last waypoint at or before `line` at which a segment begins, and its
+/// slots, where it is the last waypoint at or before `number` at which a segment begins, and its
 /// passed slot. A knot is in both if it was passed over first and met later, or if it is one of the
 /// last met knots and its row has changed since. Then the record of the later revision is used. If
 /// both are of the same revision, the passed slot is used, because a cut rewrites the form of a
 /// numbered knot.
-std::optional<bool> PlanReader::find_knot(std::size_t i, Word& line) noexcept {
+std::optional<bool> PlanReader::find_knot(std::size_t i, Word& number) noexcept {
   const Word oldest = std::max(summary_.run, summary_.first);
   const bool has_passed = is_passed(i) && knot_.note.is_waypoint;
   const Time time = knot_.time;
   const Word revision = revision_of(knot_.tag);
   bool is_numbered = false;
-  for (; !is_numbered && line >= oldest && line > 0; line -= is_numbered ? 0 : 1) {
-    if (!read_knot(line)) return std::nullopt;
+  for (; !is_numbered && number >= oldest && number > 0; number -= is_numbered ? 0 : 1) {
+    if (!read_knot(number)) return std::nullopt;
     is_numbered = knot_.note.is_waypoint && knot_.note.form != SegmentForm::none;
   }
   is_numbered = is_numbered && !(has_passed && knot_.time < time);
-  if (is_numbered) --line;
+  if (is_numbered) --number;
   if (has_passed && (!is_numbered || revision_of(knot_.tag) <= revision)) return is_passed(i);
   return is_numbered;
 }

@@ -39,7 +39,7 @@ class PlanReader {
   [[nodiscard]] bool read_knots() noexcept;
   [[nodiscard]] bool read_knot(Word number) noexcept;
   [[nodiscard]] bool is_passed(std::size_t i) noexcept;
-  [[nodiscard]] std::optional<bool> find_knot(std::size_t i, Word& line) noexcept;
+  [[nodiscard]] std::optional<bool> find_knot(std::size_t i, Word& number) noexcept;
   [[nodiscard]] core::Knot to_knot(std::span<double> values) noexcept;
 
   /// Values of a knot that a window is restored from: waypoint, g, position, velocity, acceleration

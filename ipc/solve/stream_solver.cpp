@@ -229,7 +229,7 @@ Word StreamSolver::consume(Time now) noexcept {
     // While a stopper holds the stream, no item adds a knot.
     is_blocked = !is_held() && (enters_before(summary_.consumed) || !has_room(item_));
     if (is_blocked) break;
-    take(summary_.consumed++);
+    handle(summary_.consumed++);
     if (step_.is_postponed) {
       --summary_.consumed;
       break;

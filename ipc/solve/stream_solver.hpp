@@ -184,17 +184,17 @@ class StreamSolver {
     return item.kind != ItemKind::finish && item.kind != ItemKind::rate && !is_stop(item);
   }
   void begin_where_left() noexcept;
-  void take(Word number) noexcept;
-  void take_waypoint(Word number) noexcept;
+  void handle(Word number) noexcept;
+  void handle_waypoint(Word number) noexcept;
   [[nodiscard]] bool note_excess(const std::optional<LimitExcess>& excess, Word number) noexcept;
   void count_excess(std::optional<LimitExcess> excess, Word number, bool is_refused) noexcept;
   [[nodiscard]] std::optional<Refusal> append(const Waypoint& waypoint, Word number) noexcept;
-  void take_replacement(Word number) noexcept;
+  void handle_replacement(Word number) noexcept;
   void refuse_replacement(Word number, Refusal reason) noexcept;
-  void take_plan(Word number) noexcept;
+  void handle_plan(Word number) noexcept;
   [[nodiscard]] std::optional<Refusal> read_plan(Word number, core::RateCurve& plan) noexcept;
-  void take_start_state(Word number) noexcept;
-  void take_finish(Word number) noexcept;
+  void handle_start_state(Word number) noexcept;
+  void handle_finish(Word number) noexcept;
   [[nodiscard]] bool is_starved() const noexcept;
   [[nodiscard]] std::optional<Refusal> form_refusal(const Waypoint& waypoint) const noexcept;
   [[nodiscard]] std::optional<Refusal> time_refusal(Time time) const noexcept;

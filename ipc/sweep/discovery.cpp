@@ -13,24 +13,24 @@
 
 namespace splinecast::ipc {
 
-void StreamSweep::look_around() {
-  if (regions_.version() != seen_ || looks_again_) {
-    looks_again_ = true;
-    look_for_names();
+void StreamSweep::poll() {
+  if (regions_.version() != seen_ || must_list_again_) {
+    must_list_again_ = true;
+    list_found_streams();
     seen_ = regions_.version();
-    looks_again_ = false;
+    must_list_again_ = false;
   }
   note_ends_of_motion();
-  look_at_given_up();
-  if (to_take_.empty()) look_elsewhere();
-  if (to_take_.empty()) look_at_postponed();
+  retry_given_up();
+  if (to_attach_.empty()) check_elsewhere();
+  if (to_attach_.empty()) retry_postponed();
   if (is_any_unheld_) hold_regions();
 }
 
 /// Lists the streams to attach to, and drops streams that were found by a pattern and no longer
 /// exist.
-void StreamSweep::look_for_names() {
-  to_take_.clear();
+void StreamSweep::list_found_streams() {
+  to_attach_.clear();
   given_up_.clear();
   std::set<std::string> existing = regions_.streams();
   // The ring of a law is made by its solver, once there is a commander.
@@ -49,9 +49,9 @@ void StreamSweep::look_for_names() {
     const bool exists = existing.contains(stream);
     if (!exists && !member.is_named) continue;
     if (member.state == State::given_up) given_up_.push_back(stream);
-    if (is_to_be_tried(member)) to_take_.push_back(stream);
+    if (is_to_be_tried(member)) to_attach_.push_back(stream);
   }
-  std::ranges::reverse(to_take_);
+  std::ranges::reverse(to_attach_);
 }
 
 bool StreamSweep::is_wanted(const std::string& stream) const {
@@ -78,15 +78,15 @@ StreamSweep::Files StreamSweep::files_of(const std::string& stream) {
 
 /// Finds streams whose files have been replaced since they were given up: they are new streams, and
 /// are reported as such. At most kTries in one call: any user can make thousands of such files.
-void StreamSweep::look_at_given_up() {
-  for (std::size_t looks = 0; looks < kTries && !given_up_.empty(); ++looks) {
+void StreamSweep::retry_given_up() {
+  for (std::size_t checked = 0; checked < kTries && !given_up_.empty(); ++checked) {
     const std::string stream = std::move(given_up_.back());
     given_up_.pop_back();
     const auto found = members_.find(stream);
     if (found == members_.end() || found->second.state != State::given_up) continue;
     if (files_of(stream) == found->second.files) continue;
     found->second.state = State::unowned;
-    to_take_.push_back(stream);
+    to_attach_.push_back(stream);
   }
 }
 
@@ -97,31 +97,31 @@ void StreamSweep::note_ends_of_motion() {
     if (found == members_.end() || !found->second.waiting) return true;
     const Time end = found->second.waiting->due();
     if (end > now_) return end == Time::max();
-    to_take_.push_back(stream);
+    to_attach_.push_back(stream);
     return true;
   });
 }
 
 /// Checks whether streams of other processes have lost their solver: at most kTries in one call.
-void StreamSweep::look_elsewhere() {
+void StreamSweep::check_elsewhere() {
   if (elsewhere_.empty()) {
     for (const auto& [stream, member] : members_) {
       if (member.state == State::elsewhere) elsewhere_.push_back(stream);
     }
   }
-  for (std::size_t looks = 0; looks < kTries && !elsewhere_.empty(); ++looks) {
+  for (std::size_t checked = 0; checked < kTries && !elsewhere_.empty(); ++checked) {
     const std::string stream = std::move(elsewhere_.back());
     elsewhere_.pop_back();
     const auto found = members_.find(stream);
     if (found == members_.end() || found->second.state != State::elsewhere) continue;
     if (is_owned(stream, RegionKind::spline)) continue;
-    to_take_.push_back(stream);
-    looks = 0;
+    to_attach_.push_back(stream);
+    checked = 0;
   }
 }
 
 /// Retries the next of the streams that lacked memory or descriptors.
-void StreamSweep::look_at_postponed() {
+void StreamSweep::retry_postponed() {
   if (now_ < next_retry_) return;
   next_retry_ = now_ + kRetry;
   const auto is_postponed = [](const auto& entry) {
@@ -130,7 +130,7 @@ void StreamSweep::look_at_postponed() {
   auto next = std::find_if(members_.upper_bound(last_retried_), members_.end(), is_postponed);
   if (next == members_.end()) next = std::ranges::find_if(members_, is_postponed);
   if (next == members_.end()) return;
-  to_take_.push_back(next->first);
+  to_attach_.push_back(next->first);
   last_retried_ = next->first;
 }
 

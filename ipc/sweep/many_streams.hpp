@@ -59,7 +59,7 @@ class StreamSweep {
   static constexpr std::size_t kTries = 16;
 
   /// Interval between retries of postponed streams, one stream per retry. After a success, the next
-  /// look retries another one without this interval.
+  /// poll retries another one without this interval.
   static constexpr Time kRetry = std::chrono::milliseconds(100);
 
   enum class State : std::uint8_t {
@@ -95,18 +95,18 @@ class StreamSweep {
   };
 
   // Which streams are wanted and ready: discovery.cpp.
-  void look_around();
-  void look_for_names();
+  void poll();
+  void list_found_streams();
   [[nodiscard]] bool is_wanted(const std::string& stream) const;
   [[nodiscard]] static bool is_to_be_tried(const Member& member) noexcept;
   [[nodiscard]] static Files files_of(const std::string& stream);
-  void look_at_given_up();
+  void retry_given_up();
   void note_ends_of_motion();
-  void look_elsewhere();
-  void look_at_postponed();
+  void check_elsewhere();
+  void retry_postponed();
 
   // Attaching to streams, and giving them up: taking_up.cpp.
-  void take_next(const Clock& clock);
+  void attach_next(const Clock& clock);
   [[nodiscard]] bool own(const std::string& stream, Member& member);
   [[nodiscard]] bool attach(const std::string& stream, Member& member, const Clock& clock);
   void make_room();
@@ -134,12 +134,12 @@ class StreamSweep {
   RegionWatch regions_;
   std::optional<Word> seen_{};  ///< version of regions_ when the names were listed last
   std::map<std::string, Member> members_;
-  Time next_look_ = Time::min();
-  bool looks_again_ = false;  ///< the next look lists the names even if the folder is unchanged
+  Time next_poll_ = Time::min();
+  bool must_list_again_ = false;  ///< the next poll lists the names even if the folder is unchanged
   Time next_retry_ = Time::min();
   std::string last_retried_;            ///< the postponed stream that was retried last
   bool is_any_unheld_ = false;          ///< whether a board may lack its region lock
-  std::vector<std::string> to_take_;    ///< streams to try next, in reverse order
+  std::vector<std::string> to_attach_;  ///< streams to try next, in reverse order
   std::vector<std::string> given_up_;   ///< streams whose files may have been replaced
   std::vector<std::string> elsewhere_;  ///< streams of other processes to check, in reverse order
   std::vector<std::string> moving_;     ///< streams that wait for the end of an earlier motion

@@ -9,17 +9,17 @@
 namespace splinecast::ipc {
 namespace {
 
-constexpr Time kLookAround = std::chrono::milliseconds(50);
+constexpr Time kDiscoveryInterval = std::chrono::milliseconds(50);
 
 }  // namespace
 
 bool StreamSweep::sweep(const Clock& clock) {
   now_ = clock.now();
   try {
-    regions_.look();
+    regions_.poll();
     attach_waiting(clock);
   } catch (const std::exception&) {
-    looks_again_ = true;  // the process lacks memory or descriptors; solved streams continue
+    must_list_again_ = true;  // the process lacks memory or descriptors; solved streams continue
   }
   collect_calling();
   bool has_more = false;
@@ -28,20 +28,20 @@ bool StreamSweep::sweep(const Clock& clock) {
     has_more = serve(calling_[i], clock) || has_more;
   }
   if (has_detached_) release_detached();
-  return has_more || !to_take_.empty();
+  return has_more || !to_attach_.empty();
 }
 
 void StreamSweep::attach_waiting(const Clock& clock) {
-  // Does not look while there are streams to attach to: attaching creates files, and each of them
-  // would trigger another look.
-  if (to_take_.empty() && now_ >= next_look_) {
-    next_look_ = now_ + kLookAround;
-    look_around();
-    // Limits the share of the time that looks take, for any number of files in the folder.
+  // Does not poll while there are streams to attach to: attaching creates files, and each of them
+  // would trigger another poll.
+  if (to_attach_.empty() && now_ >= next_poll_) {
+    next_poll_ = now_ + kDiscoveryInterval;
+    poll();
+    // Limits the share of the time that polls take, for any number of files in the folder.
     constexpr int kShare = 20;
-    next_look_ = std::max(next_look_, clock.now() + kShare * (clock.now() - now_));
+    next_poll_ = std::max(next_poll_, clock.now() + kShare * (clock.now() - now_));
   }
-  if (!to_take_.empty()) take_next(clock);
+  if (!to_attach_.empty()) attach_next(clock);
 }
 
 /// Collects the streams that have work to do.
@@ -99,8 +99,8 @@ void StreamSweep::release_detached() {
   }
   has_detached_ = false;
   // Looks in the next sweep, because a new stream may already have the name.
-  looks_again_ = true;
-  next_look_ = now_;
+  must_list_again_ = true;
+  next_poll_ = now_;
 }
 
 }  // namespace splinecast::ipc

@@ -23,10 +23,10 @@ bool is_transient(const std::exception& error) noexcept {
 }  // namespace
 
 /// Attaches to the next stream that is ready.
-void StreamSweep::take_next(const Clock& clock) {
-  for (std::size_t tries = 0; tries < kTries && !to_take_.empty(); ++tries) {
-    const std::string stream = std::move(to_take_.back());
-    to_take_.pop_back();
+void StreamSweep::attach_next(const Clock& clock) {
+  for (std::size_t tries = 0; tries < kTries && !to_attach_.empty(); ++tries) {
+    const std::string stream = std::move(to_attach_.back());
+    to_attach_.pop_back();
     const auto found = members_.find(stream);
     if (found == members_.end() || found->second.state == State::solved) continue;
     if (own(stream, found->second) && attach(stream, found->second, clock)) return;
@@ -57,7 +57,7 @@ bool StreamSweep::own(const std::string& stream, Member& member) {
   } catch (const LawLost& error) {
     drop(stream, member, error);
   } catch (const NoSuchStream&) {
-    looks_again_ = true;  // it was just removed
+    must_list_again_ = true;  // it was just removed
   } catch (const std::exception& error) {
     drop(stream, member, error);
   }
@@ -67,7 +67,7 @@ bool StreamSweep::own(const std::string& stream, Member& member) {
 /// Attaches to the stream if it exists. Returns whether it did.
 bool StreamSweep::attach(const std::string& stream, Member& member, const Clock& clock) {
   try {
-    regions_.look();  // a law begins with the requests that are there
+    regions_.poll();  // a law begins with the requests that are there
     if (!member.waiting->attach(clock)) {
       const bool is_noted = std::ranges::find(moving_, stream) != moving_.end();
       if (member.waiting->due() < Time::max() && !is_noted) moving_.push_back(stream);

@@ -22,7 +22,7 @@ namespace {
 constexpr int kMostActions = 64;
 
 /// Reads everything on a board that `info` and a producer read.
-void look_around(const ipc::KnotBoardReader& board) {
+void read_everything(const ipc::KnotBoardReader& board) {
   ipc::Summary summary;
   const ipc::Look look = board.look();
   const ipc::Word r = look.revision;
@@ -65,7 +65,7 @@ void play(Script& script, GuardedBytes& bytes, const ipc::KnotBoardReader& board
         sampling.snapshot(sampling.pick(script), sampling.pick(script));
         break;
       case 1:
-        look_around(board);
+        read_everything(board);
         break;
       case 2:
         settled.look();
@@ -102,7 +102,7 @@ void try_reader(const StreamImage& image) {
     const ipc::KnotBoardReader board(bytes.span(), layout);
     ipc::Sampler sampler(board, ipc::stream_clock(header), ipc::dimension_kinds(header));
     Sampling sampling(board, sampler);
-    look_around(board);
+    read_everything(board);
     (void)ipc::end_of_motion(header, board, {});
     sampling.tour();
     Script script(image.script);

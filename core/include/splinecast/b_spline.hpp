@@ -26,10 +26,4 @@ struct BSpline {
 /// single waypoint has no interval for a knot vector. O(n·k²·D); allocates.
 [[nodiscard]] BSpline to_b_spline(const PiecewisePolynomial& curve);
 
-/// Converts a B-spline to a curve between its knots `degree` and n, with one segment of order
-/// degree + 1 for each non-empty interval. Exact to rounding. Throws std::invalid_argument, with
-/// index and value, for a degree out of range, for decreasing knots, for a number of knots that
-/// does not match the control points, and if no interval is left. O(n·k²·(k + D)); allocates.
-[[nodiscard]] PiecewisePolynomial from_b_spline(const BSpline& spline);
-
 }  // namespace splinecast

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include "splinecast/piecewise_polynomial.hpp"
 
@@ -23,14 +22,6 @@ namespace [[gnu::visibility("default")]] splinecast {
 /// segments. A segment cut on its left is re-expanded there (Taylor shift); all others keep their
 /// bits. With from = to the result is a hold. Throws for times outside or out of order.
 [[nodiscard]] PiecewisePolynomial restricted(const PiecewisePolynomial& curve, Time from, Time to);
-
-/// Curve `a` followed by `b`, both bit for bit. Throws unless both have the same dimensions and b
-/// begins at the time at which a ends. An empty curve or a hold adds nothing to the other curve.
-[[nodiscard]] PiecewisePolynomial concatenated(const PiecewisePolynomial& a,
-                                               const PiecewisePolynomial& b);
-
-/// The curve moved by `by` in time; no coefficient changes.
-[[nodiscard]] PiecewisePolynomial shifted(const PiecewisePolynomial& curve, Time by);
 
 /// The same curve with every segment of order `order`, padded with zero coefficients. Throws if
 /// `order` is less than curve.order() or more than kMaxPolynomialOrder.
@@ -59,18 +50,5 @@ struct Extremes {
 /// The same over one segment, closed at both ends.
 [[nodiscard]] Extremes extremes_of_segment(const PiecewisePolynomial& curve, std::size_t segment,
                                            std::size_t dimension, int derivative);
-
-/// The times at which a dimension's position crosses or touches a value, ascending, without
-/// duplicates, rounded to the nanosecond. A jump across the value is a crossing at the break. A
-/// segment that stays at the value gives both its ends. Equal means equal to rounding: 16·2⁻⁵² of
-/// the largest terms. O(n·k³).
-[[nodiscard]] std::vector<Time> crossings(const PiecewisePolynomial& curve, std::size_t dimension,
-                                          double value);
-
-/// The Euclidean length of the path, ∫|v| dt [unit], between two times, first break ≤ from ≤ to ≤
-/// last break; jumps of the position add nothing. Relative error about 1e-12: ten-point
-/// Gauss–Legendre quadrature between the extrema of the speed (|v| may have a kink at a minimum),
-/// on intervals that are halved until an integral agrees with the sum of its halves. Bounded work.
-[[nodiscard]] double arc_length(const PiecewisePolynomial& curve, Time from, Time to);
 
 }  // namespace splinecast

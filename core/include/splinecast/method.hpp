@@ -2,29 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/piecewise_polynomial.hpp"
-
-namespace splinecast {
-struct Interpolant;
-struct Waypoints;
-}  // namespace splinecast
-
-/// Internal to the library: how a method is solved.
-namespace splinecast::core {
-class KnotSolver;
-enum class Use : std::uint8_t;
-struct SlopeRule;
-using MakeSolver = std::unique_ptr<KnotSolver> (*)(const Interpolant& how, const Condition& start,
-                                                   std::size_t dimensions, Use use);
-using FitAtOnce = PiecewisePolynomial (*)(const Waypoints& waypoints, const Condition& start,
-                                          const Condition& end);
-}  // namespace splinecast::core
 
 namespace [[gnu::visibility("default")]] splinecast {
 
@@ -44,6 +27,7 @@ struct Laws {
 /// Properties that follow from how a method computes its knot velocities. The defaults are those of
 /// a method that computes them from the positions around a knot.
 struct MethodTraits {
+  bool streams = false;                        ///< it can be solved while waypoints arrive
   bool converges = false;                      ///< a longer settle lag makes it more accurate
   bool needs_velocity = false;                 ///< in the waypoints; with order 6 accelerations too
   bool has_own_tail = false;                   ///< its condition at the newest knot is fixed
@@ -54,17 +38,14 @@ struct MethodTraits {
 /// A method of interpolation. There is one object for each; compare by address.
 struct Method {
   std::string_view name;
-  std::uint64_t number = 0;               ///< identifies it in shared memory; never reused
-  core::MakeSolver solver = nullptr;      ///< makes its solver; null: batch only
-  core::FitAtOnce fit_at_once = nullptr;  ///< fits all waypoints at once; null: uses `solver`
+  std::uint64_t number = 0;  ///< identifies it in shared memory; never reused
   MethodTraits traits{};
-  const core::SlopeRule* rule = nullptr;  ///< slope rule of a local method
   int order = kCubicOrder;     ///< of its segments; with 6 it may also need accelerations
   std::size_t look_ahead = 0;  ///< newer knots after which a knot is exact; 0: never
   Laws laws{};
 
   /// Whether it can be solved online, while waypoints arrive.
-  [[nodiscard]] bool streams() const noexcept { return solver != nullptr; }
+  [[nodiscard]] bool streams() const noexcept { return traits.streams; }
   /// Whether a longer settle lag makes it more accurate.
   [[nodiscard]] bool converges() const noexcept { return traits.converges; }
   [[nodiscard]] bool needs_velocity() const noexcept { return traits.needs_velocity; }

@@ -16,7 +16,7 @@ inline constexpr int kCubicOrder = 4;
 inline constexpr int kMaxOrder = 6;
 
 /// Highest order of a segment of a PiecewisePolynomial. It is above kMaxOrder, so that a curve can
-/// be integrated, raised, or converted from B-splines and Bézier segments of a higher degree.
+/// be integrated and raised.
 inline constexpr int kMaxPolynomialOrder = 16;
 
 /// The purpose of a segment; readers derive the status of a sample from it.

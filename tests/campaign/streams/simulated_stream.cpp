@@ -39,7 +39,7 @@ SimulatedStream::SimulatedStream(const StreamPlan& plan, StreamFindings& finding
       previewer_(stream_.board.reader, plan_, log_, findings, random),
       next_tick_(now_),
       next_seldom_(now_),
-      next_look_(now_),
+      next_poll_(now_),
       next_step_(now_),
       pace_(random.part(plan.live.settle_ahead, 0.05, 0.5)) {
   stream_.replace_producer();
@@ -69,7 +69,7 @@ void SimulatedStream::run() {
 /// Runs everything except the solver until t.
 void SimulatedStream::advance_to(Time t) {
   while (!findings_->stream_failed()) {
-    const Time next = std::min({producer_.next(), next_tick_, next_seldom_, next_look_});
+    const Time next = std::min({producer_.next(), next_tick_, next_seldom_, next_poll_});
     if (next > t) break;
     now_ = std::max(now_, next);
     if (producer_.next() == next) {
@@ -79,7 +79,7 @@ void SimulatedStream::advance_to(Time t) {
     } else if (next_seldom_ == next) {
       read_seldom();
     } else {
-      look_around();
+      poll();
     }
   }
   now_ = std::max(now_, t);
@@ -111,8 +111,8 @@ void SimulatedStream::read_seldom() {
   (void)seldom_.sample(now_, settled_);
 }
 
-void SimulatedStream::look_around() {
-  next_look_ = now_ + random_->part(plan_.tick, 2, 20);
+void SimulatedStream::poll() {
+  next_poll_ = now_ + random_->part(plan_.tick, 2, 20);
   (void)log_.catch_up();
   const Time ahead = plan_.live.settle_ahead + plan_.interval * 10;
   const Time t = random_->between(now_ - plan_.live.history - ahead, now_ + ahead);

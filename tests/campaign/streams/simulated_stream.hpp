@@ -24,7 +24,7 @@ class SimulatedStream {
   void advance_to(Time t);
   void read_now();
   void read_seldom();
-  void look_around();
+  void poll();
   void check_kept_up(SampleStatus status);
 
   [[nodiscard]] bool is_over() const;
@@ -53,7 +53,7 @@ class SimulatedStream {
   SimulatedReader previewer_;   ///< previews before and after now
   Time next_tick_{};
   Time next_seldom_{};
-  Time next_look_{};
+  Time next_poll_{};
   Time next_step_{};
   Time pace_{};                  ///< period of the solver's steps
   Time kept_up_until_{};         ///< the last steps must have settled the curve up to here

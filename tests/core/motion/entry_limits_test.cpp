@@ -26,7 +26,7 @@ TEST(EntrySearch, FindsEntriesThatKeepEveryLimitFromRandomStates) {
                             .lower = {-1.2, -1.4},
                             .upper = {1.2, 1.4}};
   int knots = 0;
-  int beyond = 0;
+  int ahead = 0;
   for (int i = 0; i < 300; ++i) {
     SlidingWindow target = target_of(2, sine, 3 + i % 8, limits, milliseconds(15 + i % 30));
     const double off = i % 3 == 0 ? 0.1 : 0.002;
@@ -38,9 +38,9 @@ TEST(EntrySearch, FindsEntriesThatKeepEveryLimitFromRandomStates) {
       from.acceleration[d] = i % 3 == 0 ? 8 * unit(random) : -std::sin(phase);
     }
     EntrySearch search(2, {});
-    const Found found = look_for(search, target, from, {.limits = &limits, .goes_beyond = true});
+    const Found found = look_for(search, target, from, {.limits = &limits, .may_end_ahead = true});
     if (found.outcome == Outcome::none) continue;
-    ++(found.end.knot ? knots : beyond);
+    ++(found.end.knot ? knots : ahead);
     expect_leads(found.entry, from, found.end.state);
     for (std::size_t d = 0; d < 2; ++d) {
       const double v = std::max(limits.velocity[d], std::abs(from.velocity[d]));
@@ -52,7 +52,7 @@ TEST(EntrySearch, FindsEntriesThatKeepEveryLimitFromRandomStates) {
     }
   }
   EXPECT_GT(knots, 20);
-  EXPECT_GT(beyond, 20);
+  EXPECT_GT(ahead, 20);
 }
 
 TEST(EntrySearch, FindsNothingIfTheEntryOrItsStopLeavesThePositionBounds) {
@@ -60,12 +60,12 @@ TEST(EntrySearch, FindsNothingIfTheEntryOrItsStopLeavesThePositionBounds) {
   SlidingWindow target = target_of(1, sine, 5, limits);  // beyond the bounds
   const From from = at_rest(milliseconds(50), {0});
   EntrySearch search(1, {});
-  const EntryRules rules{.limits = &limits, .goes_beyond = true};
+  const EntryRules rules{.limits = &limits, .may_end_ahead = true};
   EXPECT_EQ(look_for(search, target, from, rules).outcome, Outcome::none);
   // The target is within the bounds, but the stop after it comes to rest outside.
   const MotionLimits near{.acceleration = {4}, .lower = {-1}, .upper = {0.3}};
   SlidingWindow moving = target_of(1, sine, 5, near);
-  const EntryRules near_rules{.limits = &near, .goes_beyond = true};
+  const EntryRules near_rules{.limits = &near, .may_end_ahead = true};
   const From before = at_rest(milliseconds(90), {sine(0.09, 0) - 0.2});
   EXPECT_EQ(look_for(search, moving, before, near_rules).outcome, Outcome::none);
 }
@@ -124,7 +124,7 @@ TEST(EntrySearch, WithoutLimitsStaysWithinTheObservedVelocityAndAcceleration) {
   ASSERT_EQ(any.outcome, Outcome::found);
   EXPECT_EQ(any.end.knot, 0U);
   EXPECT_GT(peak(any.entry, 1, 0, 2), 1000);
-  const EntryRules rules{.limits = &none, .shown = &shown, .goes_beyond = true};
+  const EntryRules rules{.limits = &none, .shown = &shown, .may_end_ahead = true};
   const Found found = look_for(search, target, from, rules);
   ASSERT_EQ(found.outcome, Outcome::found);
   EXPECT_LE(peak(found.entry, 1, 0, 1), 3 * (1 + 1e-9));
@@ -143,8 +143,8 @@ TEST(EntrySearch, WithoutLimitsFindsAnEntryOfAtMostThreeSecondsFromAnyState) {
                                            unit(random) * std::pow(10, exponent(random))});
     for (double& v : from.velocity) v = unit(random) * std::pow(10, exponent(random));
     EntrySearch search(2, {});
-    const Found found =
-        look_for(search, target, from, {.limits = &none, .shown = &shown, .goes_beyond = true}, 4);
+    const Found found = look_for(search, target, from,
+                                 {.limits = &none, .shown = &shown, .may_end_ahead = true}, 4);
     ASSERT_EQ(found.outcome, Outcome::found) << i;
     EXPECT_LE(found.end.state.time - from.time, EntrySearch::kLongest);
     EXPECT_LE(found.tried, 64);

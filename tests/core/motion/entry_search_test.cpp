@@ -22,7 +22,7 @@ TEST(EntrySearch, TakesTheFirstKnotThatTheLimitsAllow) {
   for (int i = 0; i < 40; ++i) {
     const From from = at_rest(milliseconds(50), {sine(0.05, 0) + 0.01 * (i - 20)});
     EntrySearch search(1, {});
-    const Found found = look_for(search, target, from, {.limits = &limits, .goes_beyond = true});
+    const Found found = look_for(search, target, from, {.limits = &limits, .may_end_ahead = true});
     ASSERT_EQ(found.outcome, Outcome::found) << i;
     // An entry without a knot ends after the newest knot; the newest knot itself is not checked.
     const std::size_t end = found.end.knot.value_or(target.knots() - 1);
@@ -74,7 +74,7 @@ TEST(EntrySearch, EndsAlsoWithAShortestEntryOfOneNanosecond) {
     const From from = at_rest(milliseconds(200), {5});
     EntrySearch search(1, {});
     const Found found = look_for(search, target, from,
-                                 {.limits = &limits, .least = Time(least), .goes_beyond = true});
+                                 {.limits = &limits, .least = Time(least), .may_end_ahead = true});
     EXPECT_EQ(found.outcome, Outcome::none) << least;
   }
 }
@@ -86,7 +86,7 @@ TEST(EntrySearch, EntersTheExtrapolationIfTheLimitsAllowNoKnot) {
   EntrySearch search(1, {});
   const Found at_knots = look_for(search, target, from, {.limits = &limits});
   EXPECT_EQ(at_knots.outcome, Outcome::none);
-  const Found found = look_for(search, target, from, {.limits = &limits, .goes_beyond = true});
+  const Found found = look_for(search, target, from, {.limits = &limits, .may_end_ahead = true});
   ASSERT_EQ(found.outcome, Outcome::found);
   EXPECT_FALSE(found.end.knot);
   EXPECT_EQ(found.end.known, 5U);
@@ -114,7 +114,7 @@ TEST(EntrySearch, FallsBackToTheFirstReachableKnotIfTheTargetAfterItExceedsTheLi
   EntrySearch search(1, {});
   const Found at_knots = look_for(search, target, from, {.limits = &limits});
   EXPECT_EQ(at_knots.outcome, Outcome::none);
-  const Found found = look_for(search, target, from, {.limits = &limits, .goes_beyond = true});
+  const Found found = look_for(search, target, from, {.limits = &limits, .may_end_ahead = true});
   if (found.end.knot) {
     ASSERT_EQ(found.outcome, Outcome::found);
     EXPECT_TRUE(keeps_within(limits, nullptr, found.entry));
@@ -133,7 +133,7 @@ TEST(EntrySearch, PrefersALaterKnotAfterWhichTheTargetKeepsTheLimits) {
   SlidingWindow target = target_of(1, hump, 9, limits, milliseconds(40));
   const From from = at_rest(milliseconds(50), {0});
   EntrySearch search(1, {});
-  const EntryRules rules{.limits = &limits, .goes_beyond = true};
+  const EntryRules rules{.limits = &limits, .may_end_ahead = true};
   const Found found = look_for(search, target, from, rules);
   ASSERT_EQ(found.outcome, Outcome::found);
   Segment segment(1);
@@ -153,7 +153,7 @@ TEST(EntrySearch, FindsTheSameEntryForAnyNumberOfTriesPerCall) {
     SlidingWindow target = target_of(1, sine, 3 + i % 8, limits);
     From from = at_rest(milliseconds(80), {sine(0.08, 0) + 0.3 * unit(random)});
     from.velocity[0] = unit(random);
-    const EntryRules rules{.limits = &limits, .goes_beyond = true};
+    const EntryRules rules{.limits = &limits, .may_end_ahead = true};
     EntrySearch search(1, {});
     const Found whole = look_for(search, target, from, rules);
     for (const int at_once : {1, 2, 4}) {
@@ -175,7 +175,7 @@ TEST(EntrySearch, TriesNothingIfNoTryIsLeft) {
   EntrySearch search(1, {});
   search.restart(0);
   int tries = 0;
-  const EntryRules rules{.limits = &limits, .goes_beyond = true};
+  const EntryRules rules{.limits = &limits, .may_end_ahead = true};
   EXPECT_EQ(search.search(target, from.instant(), rules, tries), Outcome::more);
   EXPECT_EQ(tries, 0);
 }

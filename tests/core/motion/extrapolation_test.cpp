@@ -36,7 +36,7 @@ TEST(Extrapolation, IsAStraightLineAtTheNewestKnotsVelocityFollowedByAStop) {
     const Knot newest = window.knot(window.knots() - 1);
     Extrapolation extrapolation(3);
     extrapolation.begin(window);
-    EXPECT_EQ(extrapolation.line_end(), newest.time + Extrapolation::kLine);
+    EXPECT_EQ(extrapolation.line_end(), newest.time + Extrapolation::kLineLength);
     EXPECT_EQ(extrapolation.rest(), extrapolation.line_end() + window.options().stop_length);
     for (const int ms : {0, 1, 100, 250}) {
       const State at = state_of(extrapolation, newest.time + milliseconds(ms), 3);
@@ -120,7 +120,7 @@ TEST(Extrapolation, StartsFromTheNewestKnotAtEachBegin) {
   const Time next = window.time(window.knots() - 1) + milliseconds(30);
   window.append({.time = next, .position = {&x, 1}});
   extrapolation.begin(window);
-  EXPECT_EQ(extrapolation.line_end(), next + Extrapolation::kLine);
+  EXPECT_EQ(extrapolation.line_end(), next + Extrapolation::kLineLength);
   EXPECT_EQ(state_of(extrapolation, next, 1).position()[0], 3);
 }
 

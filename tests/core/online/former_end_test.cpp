@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 class FormerEnd : public ::testing::Test {
  protected:
   [[nodiscard]] Found look(std::optional<Time> former_end, int at_once = kAny) {
-    return look_for(search_, target_, from_, {.limits = &limits_, .goes_beyond = true}, at_once,
+    return look_for(search_, target_, from_, {.limits = &limits_, .may_end_ahead = true}, at_once,
                     former_end);
   }
   [[nodiscard]] bool passes(Time end) {

@@ -77,8 +77,8 @@ class LawCommanders : public ::testing::Test {
  protected:
   /// The least rate that is requested.
   double read(Time now, double largest = 1) {
-    watch_.look();
-    commanders_.look_around();
+    watch_.poll();
+    commanders_.poll();
     commanders_.read(now);
     return least_rate(commanders_.states(), largest);
   }

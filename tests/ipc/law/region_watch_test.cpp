@@ -55,7 +55,7 @@ class ARegionWatch : public ::testing::TestWithParam<bool> {
       GetParam() ? std::make_unique<RegionWatch>() : watch_without_events();
 
   Names names() {
-    watch_->look();
+    watch_->poll();
     return watch_->commanders().names_of(law_.name());
   }
   /// Without events a change is noticed at the next look at the folder's time.
@@ -103,7 +103,7 @@ TEST_P(ARegionWatch, MissesNoneIfEventsAreLost) {
 
 TEST_P(ARegionWatch, KnowsTheStreamsThatHaveARing) {
   const auto has = [&] {
-    watch_->look();
+    watch_->poll();
     return watch_->streams().contains(other_.name());
   };
   EXPECT_FALSE(has());
@@ -154,11 +154,11 @@ TEST(RegionWatchOfASolver, IsClosedAfterItsLocksWhenItsProcessIsKilled) {
 TEST(RegionWatchWithoutEvents, NoticesByTheFoldersTimeThatNoneArrive) {
   const TestStream law;
   RegionWatch watch;
-  watch.look();
+  watch.poll();
   make_events_stop();
   const RateCommander comes(law.name(), "comes");
   EXPECT_TRUE(await([&] {
-    watch.look();
+    watch.poll();
     return watch.commanders().names_of(law.name()).contains("comes");
   }));
 }

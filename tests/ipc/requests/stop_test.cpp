@@ -192,7 +192,7 @@ TEST(AStopper, StaysRecordedIfItReleasesAtOnce) {
   live.release();
   ASSERT_EQ(live.put(StoppedStream::kNow + milliseconds(910)), AppendStatus::accepted);
   live.drain();
-  EXPECT_EQ(live.summary().course, static_cast<Word>(Course::beyond));
+  EXPECT_EQ(live.summary().course, static_cast<Word>(Course::ahead));
   KnotCopy knot(1, false);
   ASSERT_TRUE(live.board.reader.copy_knot(knot_number, live.summary().revision, knot));
   EXPECT_TRUE(knot.begins_stoppers_stop());

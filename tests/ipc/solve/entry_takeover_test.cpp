@@ -34,7 +34,7 @@ void enter(Watched& live) {
   live.send_all(1210, 1800, 100);
 }
 
-void go_beyond(Watched& live) {
+void end_ahead(Watched& live) {
   live.send_all(50, 300, 60);
   live.run_to(800);
   live.send_all(860, 3000, 60);
@@ -74,7 +74,7 @@ void finish_late(Watched& live) {
 
 std::vector<Scenario> scenarios() {
   return {{"waiting", 3, starve_and_wait},   {"entering", 8, enter},
-          {"beyond", 2, go_beyond},          {"without limits", 0, starve_twice},
+          {"beyond", 2, end_ahead},          {"without limits", 0, starve_twice},
           {"from rest", 4, start_from_rest}, {"replacements", 6, replace_five_times, false},
           {"late finish", 2, finish_late}};
 }

@@ -84,10 +84,10 @@ TEST(Entry, WithoutAReachableWaypointContinuesAlongALineToAStop) {
   live.send(920);
   live.drain();
   live.note();
-  ASSERT_EQ(live.course(), Course::beyond);
+  ASSERT_EQ(live.course(), Course::ahead);
   EXPECT_EQ(live.solver.summary().passed_over, 3U);
   // At this time the extrapolation line from the newest waypoint ends.
-  const Time line_end = at(920) + core::Extrapolation::kLine;
+  const Time line_end = at(920) + core::Extrapolation::kLineLength;
   State end(1);
   EXPECT_TRUE(has_values(live.sampler.preview(line_end, end.ref())));
   live.run_to(3000);
