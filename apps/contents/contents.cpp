@@ -35,6 +35,7 @@ class EventCounts {
     if (contents_.events.size() < kMostNames) ++contents_.events[std::string(event)];
     if (contents_.event_list.size() < kEventsListed) {
       contents_.event_list.push_back({.log_time = message.log_time,
+                                      .publish_time = message.publish_time,
                                       .topic = message.channel->topic,
                                       .text = std::string(text_of(message.data))});
     }
@@ -49,15 +50,30 @@ class EventCounts {
   std::optional<JsonFields> fields_{};
 };
 
+/// Whether this program recorded the file in format 1: then the publish time of a message is when
+/// it was seen.
+bool is_of_format_1(const mcap::Reader& reader) {
+  return std::ranges::any_of(reader.metadata(), [](const mcap::Metadata& metadata) {
+    const auto format = metadata.values.find("format");
+    return metadata.name.starts_with("splinecast:") && format != metadata.values.end() &&
+           format->second == "1";
+  });
+}
+
 FileContents of_mcap(InputFile& file) {
   FileContents contents{.file = file.name(), .format = "MCAP"};
   mcap::Reader reader(file.name(), bytes_of(file.mapped()));
-  std::map<const mcap::Channel*, TimeSpans> times;
+  struct Times {
+    TimeSpans log, publish;
+  };
+  std::map<const mcap::Channel*, Times> times;
   EventCounts events(contents);
   mcap::Message message;
   try {
     while (reader.next(message)) {
-      times[message.channel].add(message.log_time);
+      Times& both = times[message.channel];
+      both.log.add(message.log_time);
+      both.publish.add(message.publish_time);
       events.take(message);
     }
   } catch (const InputError& damage) {
@@ -65,11 +81,18 @@ FileContents of_mcap(InputFile& file) {
   }
   contents.is_complete = !reader.ended_early() && contents.damage.empty();
   contents.written_by = reader.library();
+  const bool is_seen_published = is_of_format_1(reader);
+  for (RecordedEvent& event : contents.event_list) {
+    if (is_seen_published) event.log_time = event.publish_time;
+  }
   for (const mcap::Channel& channel : reader.channels()) {
+    const Times& both = times[&channel];
+    const bool is_own =
+        channel.schema_name.starts_with("splinecast.") || channel.message_encoding == "splinecast";
     contents.topics.push_back({.name = channel.topic,
                                .type = std::string(channel.schema_name),
                                .encoding = channel.message_encoding,
-                               .times = times[&channel]});
+                               .times = is_own && is_seen_published ? both.publish : both.log});
   }
   for (const mcap::Metadata& metadata : reader.metadata()) {
     contents.metadata.emplace_back(metadata.name, metadata.values);

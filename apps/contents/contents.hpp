@@ -54,6 +54,7 @@ struct TopicContents {
 /// An event of a recording.
 struct RecordedEvent {
   Time log_time{};
+  Time publish_time{};
   std::string topic;
   std::string text;  ///< the message, in JSON
 };

@@ -16,7 +16,8 @@
 #include "apps/process/signals.hpp"
 #include "apps/record/output/overflow.hpp"
 #include "apps/record/output/writer_thread.hpp"
-#include "apps/record/trigger.hpp"
+#include "apps/record/trigger/send.hpp"
+#include "apps/record/trigger/server.hpp"
 #include "apps/record/watch/watcher.hpp"
 #include "splinecast/clock.hpp"
 
@@ -36,7 +37,7 @@ class Recorder {
                  [&options](std::string_view stream, std::string_view why, bool is_lost) {
                    if (is_lost || !options.quiet) say(fmt::format("'{}': {}", stream, why));
                  }),
-        socket_(options.name),
+        triggers_(options.name),
         writer_(options.output, watcher_.clock()) {
     if (!options.quiet) {
       say(fmt::format("process {}: recording to {}{}", getpid(), options.output.path,
@@ -83,11 +84,13 @@ class Recorder {
   }
 
   void look_at_triggers() {
-    const bool has_signal = take_trigger_signal();
     const Time now = clock_.now();
-    if (!has_signal && now < next_trigger_) return;
+    if (now < next_trigger_) return;
     next_trigger_ = now + std::chrono::milliseconds(10);
-    if (!socket_.take() && !has_signal) return;
+    if (const auto done = writer_.take_trigger_result()) {
+      triggers_.answer(done->is_done, done->text);
+    }
+    if (!triggers_.poll()) return;
     put(now);
     writer_.trigger();
   }
@@ -95,7 +98,7 @@ class Recorder {
   const RecordOptions& options_;
   MonotonicClock clock_;
   Watcher watcher_;
-  TriggerSocket socket_;
+  TriggerServer triggers_;
   WriterThread writer_;
   Batch batch_;
   Time next_put_{};
@@ -143,7 +146,7 @@ nlohmann::ordered_json to_json(const OutputReport& report) {
 
 int run_record(const RecordOptions& options) {
   if (!options.trigger.empty()) {
-    send_trigger(options.trigger);
+    print_report(send_trigger(options.trigger) + "\n");
     return kOk;
   }
   mcap::require_mcap();

@@ -10,7 +10,7 @@
 #include "apps/cli/verb.hpp"
 #include "apps/files/numbers.hpp"
 #include "apps/record/recorder.hpp"
-#include "apps/record/trigger.hpp"
+#include "apps/record/trigger/address.hpp"
 #include "apps/record/watch/events.hpp"
 #include "ipc/memory/names.hpp"
 
@@ -138,7 +138,7 @@ void add_record(Command& verb, Action& action) {
   verb.option(
           "--trigger", options->trigger,
           "Trigger the recorder with this process id or name, and end: with --last it writes its "
-          "memory, else it begins another file")
+          "memory, else it begins another file. Prints the name of the file when it has begun")
       .type("PID|NAME");
   verb.flag("--json", options->json, "Print JSON");
   verb.flag("--quiet", options->quiet, "Print no messages except failures");

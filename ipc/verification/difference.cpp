@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -81,6 +82,50 @@ std::optional<Difference> compare(const SegmentCopy& published, const core::Segm
   const std::size_t count = static_cast<std::size_t>(solved.order) * dimensions;
   return compare_coefficients(std::span(published.coefficients).first(count), solved.coefficients,
                               dimensions);
+}
+
+namespace {
+
+/// The second derivative of a dimension at one end of a segment, and the size of the values from
+/// which it follows by differences, for its rounding.
+struct EndAcceleration {
+  double value = 0;
+  double size = 0;
+};
+
+EndAcceleration acceleration_at(const SegmentCopy& segment, std::size_t d, bool is_right) noexcept {
+  const std::size_t dimensions =
+      segment.coefficients.size() / static_cast<std::size_t>(segment.order);
+  const double seconds = to_seconds(segment.right - segment.left);
+  EndAcceleration at;
+  double power = 1 / (seconds * seconds);
+  for (int k = 0; k < segment.order; ++k, power *= seconds) {
+    const double c = segment.coefficients[static_cast<std::size_t>(k) * dimensions + d];
+    at.size += k * std::abs(c) * power + std::abs(c) * power;
+    if (k == 2 || (k > 2 && is_right)) at.value += k * (k - 1) * c * power;
+  }
+  return at;
+}
+
+}  // namespace
+
+std::optional<Difference> compare_step(const SegmentCopy& before, const SegmentCopy& segment) {
+  constexpr double kRounding = 1e-11;
+  if (segment.number != before.next) return std::nullopt;
+  const std::size_t dimensions =
+      segment.coefficients.size() / static_cast<std::size_t>(segment.order);
+  if (segment.acceleration_step.size() != dimensions) {
+    return differ("acceleration step", "none", "one");
+  }
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    const EndAcceleration end = acceleration_at(before, d, true);
+    const EndAcceleration start = acceleration_at(segment, d, false);
+    const double step = segment.acceleration_step[d];
+    const double solved = start.value - end.value;
+    if (std::abs(step - solved) <= kRounding * (start.size + end.size)) continue;
+    return differ("acceleration step", in_words(step), in_words(solved));
+  }
+  return std::nullopt;
 }
 
 }  // namespace splinecast::ipc

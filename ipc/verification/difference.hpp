@@ -42,4 +42,9 @@ struct Difference {
                                                 const core::Segment& solved, std::size_t dimensions,
                                                 bool may_be_cut);
 
+/// Compares the acceleration step of a segment with those of the segment before it and of its own
+/// begin, up to rounding; nothing if the segments do not follow one another.
+[[nodiscard]] std::optional<Difference> compare_step(const SegmentCopy& before,
+                                                     const SegmentCopy& segment);
+
 }  // namespace splinecast::ipc

@@ -246,6 +246,7 @@ void StreamReplay::solve_ending(std::size_t i) {
 bool StreamReplay::compare_solved(std::size_t i) {
   const bool may_be_cut = i + 1 < segments_.size() || !record_.summary.finished;
   auto difference = compare(segments_[i], solved_, record_.items.dimensions(), may_be_cut);
+  if (!difference && i > 0) difference = compare_step(segments_[i - 1], segments_[i]);
   return difference ? differ(i, std::move(*difference)) : true;
 }
 

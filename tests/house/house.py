@@ -43,7 +43,7 @@ ROOMS = {
            "python/values python",
     "apps": "process files mcap/format mcap/output mcap/input messages output pages timing tables tables/topics "
             "tables/ulog cli recover contents recordings limits streams rate stop record/format record/watch record/output "
-            "record/verification record advise fit check replay trials demo machine latency soak completion",
+            "record/verification record/trigger record advise fit check replay trials demo machine latency soak completion",
 }
 # The installed C header, which may be included as an installed header of C++ is.
 C_HEADER = "splinecast.h"

@@ -59,10 +59,12 @@ void JsonMessages::values(std::string_view name, std::span<const double> values)
   text_ += '}';
 }
 
-std::string_view JsonMessages::waypoint(ipc::Word number, const ipc::RingItem& item) {
+std::string_view JsonMessages::waypoint(const NumberedItem& numbered) {
+  const ipc::RingItem& item = numbered.item;
   text_.clear();
   append(text_, R"({{"time_ns":{},"kind":"{}","item":{})", item.time.count(), name_of(item.kind),
-         number);
+         numbered.number);
+  if (numbered.is_old) text_ += R"(,"old":true)";
   const Waypoint given = values_of(item);
   if (item.kind == ipc::ItemKind::finish) {
     append(text_, R"(,"condition":"{}")", to_string(condition_of(item)));
@@ -111,7 +113,7 @@ std::string JsonMessages::schema(std::string_view title, std::string_view furthe
 
 std::string JsonMessages::waypoint_schema() const {
   return schema("splinecast.Waypoint",
-                R"(,"kind":{"type":"string"},"item":{"type":"integer"},)"
+                R"(,"kind":{"type":"string"},"item":{"type":"integer"},"old":{"type":"boolean"},)"
                 R"("condition":{"type":"string"},"count":{"type":"integer"},)"
                 R"("blend_ns":{"type":"integer"},"rate":{"type":"number"},)"
                 R"("length_ns":{"type":"integer"},"commander":{"type":"integer"},)"

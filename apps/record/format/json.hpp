@@ -7,9 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/record/format/messages.hpp"
 #include "ipc/layout/header.hpp"
-#include "ipc/memory/word.hpp"
-#include "ipc/ring/item.hpp"
 #include "splinecast/time.hpp"
 
 namespace splinecast::apps::record {
@@ -22,7 +21,7 @@ class JsonMessages {
   explicit JsonMessages(const ipc::RegionHeader& header);
 
   /// An item, as `/NAME/waypoints` has it. A view, valid until the next call.
-  [[nodiscard]] std::string_view waypoint(ipc::Word number, const ipc::RingItem& item);
+  [[nodiscard]] std::string_view waypoint(const NumberedItem& numbered);
 
   /// A sample, as `/NAME/states` has it: D values each.
   [[nodiscard]] std::string_view state(Time time, std::span<const double> position,

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::uint8_t kHasVelocity = 1;
 constexpr std::uint8_t kHasAcceleration = 2;
+constexpr std::uint8_t kIsOld = 4;
 
 Bytes begin(RecordKind kind, std::size_t size) {
   Bytes bytes;
@@ -52,8 +53,11 @@ constexpr std::array kSummaryWords{
 
 RecordKind kind_of(std::span<const std::byte> message) {
   if (message.empty()) throw BadMessage("it is empty");
-  return checked(std::to_integer<std::uint8_t>(message[0]), RecordKind::options,
-                 RecordKind::account, "kind");
+  const auto kind = std::to_integer<std::uint8_t>(message[0]);
+  if (kind > static_cast<std::uint8_t>(RecordKind::account)) {
+    throw BadMessage(fmt::format("it has kind {}: it was made by a newer version", kind));
+  }
+  return checked(kind, RecordKind::options, RecordKind::account, "kind");
 }
 
 Waypoint values_of(const ipc::RingItem& item) noexcept {
@@ -69,14 +73,15 @@ Condition condition_of(const ipc::RingItem& item) {
   return {.kind = item.condition, .value = {value.begin(), value.end()}};
 }
 
-Bytes encode(ipc::Word number, const ipc::RingItem& item) {
+Bytes encode(const NumberedItem& numbered) {
+  const ipc::RingItem& item = numbered.item;
   Bytes bytes = begin(RecordKind::item, 36 + item.values.size() * sizeof(double));
   const Waypoint values = values_of(item);
-  const auto flags =
-      static_cast<std::uint8_t>((values.velocity.empty() ? 0 : kHasVelocity) |
-                                (values.acceleration.empty() ? 0 : kHasAcceleration));
+  const auto flags = static_cast<std::uint8_t>(
+      (values.velocity.empty() ? 0 : kHasVelocity) |
+      (values.acceleration.empty() ? 0 : kHasAcceleration) | (numbered.is_old ? kIsOld : 0));
   ByteWriter(bytes)
-      .put(number)
+      .put(numbered.number)
       .put(static_cast<std::uint8_t>(item.kind))
       .put(flags)
       .put(item.kind == ipc::ItemKind::rate ? item.commander
@@ -98,6 +103,7 @@ NumberedItem decode_item(std::span<const std::byte> bytes, std::size_t dimension
   item.kind =
       checked(in.take<std::uint8_t>(), ipc::ItemKind::waypoint, ipc::ItemKind::rate, "item kind");
   const auto flags = in.take<std::uint8_t>();
+  found.is_old = (flags & kIsOld) != 0;
   item.has_velocity = (flags & kHasVelocity) != 0;
   item.has_acceleration = (flags & kHasAcceleration) != 0;
   if (item.kind == ipc::ItemKind::rate) {

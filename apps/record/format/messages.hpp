@@ -24,9 +24,10 @@ namespace splinecast::apps::record {
 
 struct NumberedItem {
   ipc::Word number = 0;
+  bool is_old = false;  ///< it was sent before the recorder attached
   ipc::RingItem item;
 };
-[[nodiscard]] Bytes encode(ipc::Word number, const ipc::RingItem& item);
+[[nodiscard]] Bytes encode(const NumberedItem& numbered);
 [[nodiscard]] NumberedItem decode_item(std::span<const std::byte> bytes, std::size_t dimensions);
 /// The values of an item as a waypoint; positions only if its kind has them. A view.
 [[nodiscard]] Waypoint values_of(const ipc::RingItem& item) noexcept;

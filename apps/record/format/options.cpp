@@ -217,10 +217,12 @@ void check_board(RegionHeader& header) {
 StreamOptions parse(const json& object) {
   const Fields fields(object);
   const auto format = fields.take<int>("format");
-  if (format != kFormat) {
-    throw BadMessage(
-        fmt::format("it has format {}; this program reads format {}", format, kFormat));
+  if (format > kFormat) {
+    throw BadMessage(fmt::format(
+        "it was made by a newer version: it has format {}, this program reads formats 1 to {}",
+        format, kFormat));
   }
+  if (format < 1) throw BadMessage(fmt::format("it has format {}, not 1 to {}", format, kFormat));
   StreamOptions options{.stream = fields.take<std::string>("stream")};
   ipc::require_stream_name(options.stream);
   options.wall_offset = Time(fields.take<std::int64_t>("wall_offset_ns"));

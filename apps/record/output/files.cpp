@@ -28,6 +28,12 @@ constexpr Time kShortest = std::chrono::seconds(1);
 /// The account of a stream that has ended is kept longer than its records, by this time.
 constexpr Time kKeepAccount = std::chrono::seconds(10);
 
+/// Whether a record is the event with which a stream ends.
+bool is_retirement(const Record& record) noexcept {
+  return record.kind == RecordKind::event &&
+         record.number == static_cast<ipc::Word>(EventKind::retired);
+}
+
 }  // namespace
 
 Files::Files(const OutputOptions& options)
@@ -56,12 +62,6 @@ void Files::take(Batch&& batch) {
 
 void Files::take_events(const Batch& batch) {
   for (const EventNote& event : batch.events) {
-    if (event.kind == EventKind::retired) {
-      memory_.end(event.stream);
-      accounts_.end(event.stream);
-      if (file_) write_account(event.stream, batch.now, false);
-      if (file_) file_->end(event.stream);
-    }
     if (!keeps_memory() || event.is_old || !options_.on.contains(event.kind)) continue;
     const std::string_view why = to_string(event.kind);
     if (dumps_.take_event(why, batch.now)) begin_dump(why, batch.now);
@@ -83,9 +83,21 @@ void Files::take(Record record) {
     }
   }
   const Time now = record.seen;
+  const std::uint32_t stream = record.stream;
+  const bool is_end = is_retirement(record);
   memory_.add(std::move(record), forget());
+  if (is_end) end_stream(stream, now);
   if (file_ && file_->failed()) return fail(file_->why(), now);
   if (file_ && memory_.bytes() > RecordMemory::kMostHeld / 2) end_chunk(now);
+}
+
+/// The next record of the same number belongs to another stream.
+void Files::end_stream(std::uint32_t stream, Time now) {
+  memory_.end(stream);
+  accounts_.end(stream);
+  if (!file_) return;
+  write_account(stream, now, false);
+  file_->end(stream);
 }
 
 /// Writes a record. One that cannot be written is lost, and no other one of any stream is.
@@ -153,11 +165,18 @@ OutputReport Files::report() const {
   return report;
 }
 
-void Files::trigger(Time now) {
-  if (!keeps_memory()) return rotate(now);
-  if (file_) close_file(now);
-  dumps_.take_trigger(now);
-  begin_dump("trigger", now);
+TriggerResult Files::trigger(Time now) {
+  const std::size_t files = report_.files.size();
+  if (keeps_memory()) {
+    if (file_) close_file(now);
+    dumps_.take_trigger(now);
+    begin_dump("trigger", now);
+  } else {
+    rotate(now);
+  }
+  // A dump without further time may be complete already.
+  if (report_.files.size() > files) return {.is_done = true, .text = report_.files[files]};
+  return {.text = fmt::format("{}; it is written as soon as that is possible", why_)};
 }
 
 /// Begins a file with what is in memory, and `why` in its name.
@@ -233,6 +252,7 @@ void Files::write_losses(const Record& options, Time now) {
 }
 
 void Files::fail(const std::string& why, Time now) {
+  why_ = why;
   if (!is_failing_) {
     const std::string what = file_ ? fmt::format("{}: {}", file_->path(), why) : why;
     say(fmt::format("{}; recording continues as soon as a file can be written", what));

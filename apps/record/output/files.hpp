@@ -33,6 +33,12 @@ struct OutputOptions {
   std::optional<std::size_t> max_files{};
 };
 
+/// What came of a trigger.
+struct TriggerResult {
+  bool is_done = false;  ///< whether its file has been begun
+  std::string text{};    ///< the name of the file; else why there is none yet
+};
+
 /// What a recorder has written.
 struct OutputReport {
   std::vector<std::string> files{};
@@ -60,7 +66,7 @@ class Files {
   void take(Batch&& batch);
 
   /// Begins a dump. Without `last`: ends the file and begins another one.
-  void trigger(Time now);
+  TriggerResult trigger(Time now);
 
   /// What is due at a time: ends chunks and files, checks the folder, tries again after a failure.
   /// Call it several times per second.
@@ -74,6 +80,7 @@ class Files {
  private:
   void take(Record record);
   void take_events(const Batch& batch);
+  void end_stream(std::uint32_t stream, Time now);
   void begin_dump(std::string_view why, Time now);
   void end_dump(Time now);
   [[nodiscard]] bool keeps_memory() const noexcept { return options_.last.has_value(); }
@@ -107,6 +114,7 @@ class Files {
   std::string wanted_;       ///< kind of the file that could not be created; of a dump its event
   bool wants_file_ = false;  ///< whether a file should be open
   bool is_failing_ = false;  ///< whether the last one failed, which has been said
+  std::string why_;          ///< of the last failure
   bool is_part_ = false;     ///< whether the next file continues one that has what is older
   DumpSchedule dumps_;
   Time opened_{};

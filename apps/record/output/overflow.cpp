@@ -19,7 +19,9 @@ void Overflow::take(Batch& batch) {
     lost.erase(found);
   };
   for (Record& record : batch.records) {
-    if (record.kind == RecordKind::options) {
+    const bool is_end = record.kind == RecordKind::event &&
+                        record.number == static_cast<ipc::Word>(EventKind::retired);
+    if (record.kind == RecordKind::options || is_end) {
       note(record.stream);
       put_losses(record.stream);
       ++options_;

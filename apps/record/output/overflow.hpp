@@ -11,7 +11,8 @@
 namespace splinecast::apps::record {
 
 /// What stays of batches for which the queue had no room: the options of streams, without which
-/// nothing of them can be written, and what was lost, by stream. One thread uses it.
+/// nothing of them can be written, that a stream has ended, and what was lost, by stream. One
+/// thread uses it.
 class Overflow {
  public:
   /// Above this number of options no further stream should be attached.

@@ -44,9 +44,7 @@ std::map<std::string, std::string> metadata_of(std::string_view options) {
 }  // namespace
 
 RecordingFile::Stream::Stream(const StreamOptions& options, double states_hz)
-    : dimensions(options.waypoints.dimensions),
-      json(options.waypoints),
-      wall_offset(options.wall_offset) {
+    : dimensions(options.waypoints.dimensions), json(options.waypoints) {
   if (states_hz > 0) sampled.emplace(options.waypoints, states_hz);
 }
 
@@ -128,8 +126,7 @@ void RecordingFile::write(const Record& record) {
   const auto body = std::span<const std::byte>(record.bytes).subspan(1);
   if (record.kind == RecordKind::item) {
     const NumberedItem item = decode_item(body, stream.dimensions);
-    put(stream, stream.waypoints, record.own_time, record.seen,
-        stream.json.waypoint(item.number, item.item));
+    put(stream, stream.waypoints, record.own_time, record.seen, stream.json.waypoint(item));
   } else if (record.kind == RecordKind::segment && stream.sampled) {
     put_states(stream, record);
   }
@@ -139,14 +136,17 @@ void RecordingFile::put_states(Stream& stream, const Record& record) {
   const auto segment =
       decode_segment(std::span<const std::byte>(record.bytes).subspan(1), stream.dimensions);
   stream.sampled->sample(segment, [&](Time time, const State& state) {
-    put(stream, stream.states, saturated_sum(time, stream.wall_offset), record.seen,
+    const double part = to_seconds(time - segment.left) / to_seconds(segment.right - segment.left);
+    const Time own =
+        record.own_time + from_seconds(part * to_seconds(record.own_end - record.own_time));
+    put(stream, stream.states, own, record.seen,
         stream.json.state(time, state.position(), state.velocity(), state.acceleration()));
   });
 }
 
 void RecordingFile::put(Stream& stream, std::uint16_t channel, Time own_time, Time seen,
                         std::span<const std::byte> data) {
-  writer_->write(channel, stream.sequence[channel]++, own_time, seen, data);
+  writer_->write(channel, stream.sequence[channel]++, seen, own_time, data);
 }
 
 void RecordingFile::put(Stream& stream, std::uint16_t channel, Time own_time, Time seen,

@@ -80,7 +80,6 @@ class RecordingFile {
     std::size_t dimensions;
     JsonMessages json;
     std::optional<States> sampled;
-    Time wall_offset;
     std::map<std::uint16_t, std::uint32_t> sequence{};
   };
 

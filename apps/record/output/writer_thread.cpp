@@ -46,6 +46,11 @@ void WriterThread::put(Batch& batch) {
 
 void WriterThread::trigger() { push(Trigger{}, 0); }
 
+std::optional<TriggerResult> WriterThread::take_trigger_result() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(triggered_, std::nullopt);
+}
+
 void WriterThread::push(Job job, std::size_t bytes) {
   {
     const std::lock_guard lock(mutex_);
@@ -112,7 +117,9 @@ std::size_t WriterThread::do_all(std::deque<Job> jobs) {
       files_.take(std::move(*batch));
       files_.tick(now);
     } else {
-      files_.trigger(clock_.now());
+      TriggerResult result = files_.trigger(clock_.now());
+      const std::lock_guard lock(mutex_);
+      triggered_ = std::move(result);
     }
   }
   return done;

@@ -5,6 +5,7 @@
 #include <deque>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <variant>
 
@@ -36,6 +37,8 @@ class WriterThread {
 
   /// Puts a trigger into the queue: a request to dump, or to begin a new file.
   void trigger();
+  /// What came of it, once.
+  [[nodiscard]] std::optional<TriggerResult> take_trigger_result();
 
   /// Writes all of the queue and a last batch, ends the last file and the thread. Rethrows an
   /// exception of it.
@@ -57,6 +60,7 @@ class WriterThread {
   std::condition_variable wakes_;
   std::deque<Job> jobs_;
   std::size_t queued_ = 0;  ///< bytes of the batches that have not been written
+  std::optional<TriggerResult> triggered_{};
   bool is_ending_ = false;
   std::exception_ptr failure_{};
   std::thread thread_;

@@ -27,16 +27,14 @@ bool is_same(const ipc::Look& a, const ipc::Look& b) noexcept {
 }  // namespace
 
 BoardWatch::BoardWatch(std::uint32_t number, ipc::CheckedRegion<ipc::BoardLayout> board,
-                       RingWatch& ring, Time wall_offset, std::unique_ptr<ipc::LawFollower> law)
+                       RingWatch& ring, const StreamTimes& times)
     : number_(number),
       board_(std::move(board)),
       reader_(board_.region.bytes(), board_.layout),
       ring_(ring),
-      is_live_(is_live(ipc::stream_clock(board_.header))),
-      wall_offset_(is_live_ ? wall_offset : Time::zero()),
+      times_(times),
       options_(ipc::window_options(board_.header)),
-      law_(std::move(law)),
-      settled_(reader_, is_live_),
+      settled_(reader_, is_live(ipc::stream_clock(board_.header))),
       refused_(ipc::kRefusalsKept) {
   board_.region.close_descriptor();
 }
@@ -45,20 +43,21 @@ bool BoardWatch::calls() const noexcept {
   return !is_same(reader_.look(), looked_) || settled_.waits() || reader_.retired();
 }
 
-Record BoardWatch::record(RecordKind kind, ipc::Word number, Time time, Bytes bytes) const {
+Record BoardWatch::record(RecordKind kind, ipc::Word number, Time own_time, Bytes bytes) const {
   return {.stream = number_,
           .kind = kind,
           .number = number,
-          .own_time = saturated_sum(time, wall_offset_),
+          .own_time = own_time,
           .bytes = std::move(bytes)};
 }
 
 Time BoardWatch::event_time(const Batch& batch) const noexcept {
-  return is_live_ ? batch.now - wall_offset_ : summary_.newest_time;
+  return times_.stream_time(batch.now, summary_.newest_time);
 }
 
 void BoardWatch::look(Batch& batch) {
-  const Time final_until = law_ ? law_->final_until(MonotonicClock().now()) : Time::max();
+  ipc::LawFollower* const law = times_.law();
+  const Time final_until = law != nullptr ? law->final_until(MonotonicClock().now()) : Time::max();
   looked_ = reader_.look();
   settled_.look(final_until);
   // Items after the board: the record then has every item that the segments depend on.
@@ -89,13 +88,12 @@ void BoardWatch::look_back(Batch& batch) {
 void BoardWatch::put_summary(Batch& batch) {
   last_summary_ = batch.now;
   if (summary_.revision == 0) return;
-  batch.add(record(RecordKind::summary, summary_.revision, event_time(batch), encode(summary_)));
+  batch.add(record(RecordKind::summary, summary_.revision, batch.now, encode(summary_)));
 }
 
 void BoardWatch::put_event(Batch& batch, EventKind kind, const std::string& members) const {
-  const Time time = event_time(batch);
-  add_event(batch, {.stream = number_, .kind = kind, .is_old = looks_back_}, time,
-            saturated_sum(time, wall_offset_), members);
+  add_event(batch, {.stream = number_, .kind = kind, .is_old = looks_back_}, event_time(batch),
+            batch.now, members);
 }
 
 void BoardWatch::put_loss(Batch& batch, const Loss& loss) const {
@@ -114,7 +112,7 @@ void BoardWatch::put_refusals(Batch& batch) {
     put_loss(batch, {.cause = cause(), .refusals = missed});
   }
   for (const ipc::RefusalRecord& refused : std::span(refused_).first(count)) {
-    batch.add(record(RecordKind::refusal, refused.item, event_time(batch), encode(refused)));
+    batch.add(record(RecordKind::refusal, refused.item, batch.now, encode(refused)));
     put_event(batch, EventKind::refusal,
               fmt::format(R"("item":{},"reason":"{}")", refused.item, to_string(refused.reason)));
   }
@@ -194,8 +192,10 @@ void BoardWatch::put_segments(Batch& batch) {
       put_restart(batch, {.before = *before, .first_item = *segment.origin.item});
     }
     if (is_start) ring_.forget_before(*segment.origin.item);
-    batch.add(record(RecordKind::segment, segment.number, segment.left, encode(segment)));
+    batch.add(record(RecordKind::segment, segment.number, times_.wall_time(segment.left, batch.now),
+                     encode(segment)));
     batch.records.back().next = std::max(segment.next, segment.number + 1);
+    batch.records.back().own_end = times_.wall_time(segment.right, batch.now);
   }
   last_ = segments.back();
   has_last_ = true;
@@ -206,7 +206,8 @@ void BoardWatch::put_segments(Batch& batch) {
 void BoardWatch::put_restart(Batch& batch, Restart restart) {
   needs_start_ = false;
   last_start_ = batch.now;
-  batch.add(record(RecordKind::restart, restart.first_item, restart.before.right, encode(restart)));
+  batch.add(record(RecordKind::restart, restart.first_item,
+                   times_.wall_time(restart.before.right, batch.now), encode(restart)));
 }
 
 /// Writes the knots up to the end of a settled segment, if the board has them.

@@ -25,9 +25,9 @@ namespace splinecast::apps::record {
 /// thread uses it.
 class BoardWatch {
  public:
-  /// `ring`: of the same stream; outlives this. `law`: that the stream follows, or null.
+  /// `ring` and `times`: of the same stream; outlive this.
   BoardWatch(std::uint32_t number, ipc::CheckedRegion<ipc::BoardLayout> board, RingWatch& ring,
-             Time wall_offset, std::unique_ptr<ipc::LawFollower> law);
+             const StreamTimes& times);
   BoardWatch(const BoardWatch&) = delete;
   BoardWatch& operator=(const BoardWatch&) = delete;
 
@@ -69,17 +69,16 @@ class BoardWatch {
   void put_restart(Batch& batch, Restart restart);
   void try_restart(Batch& batch, const ipc::SegmentCopy& before);
   [[nodiscard]] bool wants_start(const Batch& batch) const noexcept;
-  [[nodiscard]] Record record(RecordKind kind, ipc::Word number, Time time, Bytes bytes) const;
+  /// `own_time`: on the wall clock.
+  [[nodiscard]] Record record(RecordKind kind, ipc::Word number, Time own_time, Bytes bytes) const;
   [[nodiscard]] Time event_time(const Batch& batch) const noexcept;
 
   std::uint32_t number_;
   ipc::CheckedRegion<ipc::BoardLayout> board_;
   ipc::KnotBoardReader reader_;
   RingWatch& ring_;
-  bool is_live_;
-  Time wall_offset_;
+  const StreamTimes& times_;
   core::WindowOptions options_;
-  std::unique_ptr<ipc::LawFollower> law_;  ///< that the stream follows, if it is there
   ipc::SettledSegments settled_;
   ipc::RunStarts starts_;
   ipc::Look looked_{};

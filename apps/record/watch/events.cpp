@@ -38,12 +38,14 @@ std::string trigger_names() {
 
 void add_event(Batch& batch, const EventNote& event, Time time, Time own_time,
                const std::string& members) {
-  const std::string text = fmt::format(R"({{"time_ns":{},"event":"{}"{}{}}})", time.count(),
-                                       to_string(event.kind), members.empty() ? "" : ",", members);
+  const std::string text =
+      fmt::format(R"({{"time_ns":{},"event":"{}"{}{}{}}})", time.count(), to_string(event.kind),
+                  event.is_old ? R"(,"old":true)" : "", members.empty() ? "" : ",", members);
   const auto bytes = std::as_bytes(std::span(text));
   batch.events.push_back(event);
   batch.add({.stream = event.stream,
              .kind = RecordKind::event,
+             .number = static_cast<ipc::Word>(event.kind),
              .own_time = own_time,
              .bytes = Bytes(bytes.begin(), bytes.end())});
 }

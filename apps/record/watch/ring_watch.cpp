@@ -27,13 +27,13 @@ std::pair<ipc::Word, ipc::Word> owner_of(std::span<const std::byte> region) noex
 }
 
 RingWatch::RingWatch(std::uint32_t number, ipc::CheckedRegion<ipc::RingLayout> ring,
-                     Time wall_offset)
+                     const StreamTimes& times)
     : number_(number),
       ring_(std::move(ring)),
       reader_(ring_.region.bytes(), ring_.layout),
-      is_live_(is_live(ipc::stream_clock(ring_.header))),
-      wall_offset_(is_live_ ? wall_offset : Time::zero()),
-      item_(ring_.layout.dimensions) {
+      times_(times),
+      item_(ring_.layout.dimensions),
+      old_until_(reader_.written()) {
   ring_.region.close_descriptor();
 }
 
@@ -50,7 +50,7 @@ bool RingWatch::look(Batch& batch) {
     add_loss(batch, number_,
              {.cause = has_any_ ? LossCause::overwritten : LossCause::before,
               .items = {.first = next_, .count = oldest - next_}},
-             is_live_ ? batch.now - wall_offset_ : item_.time);
+             times_.stream_time(batch.now, item_.time));
     next_ = oldest;
     set_incomplete_before(next_);
     has_lost = true;
@@ -69,8 +69,9 @@ void RingWatch::put_item(Batch& batch) {
              .kind = RecordKind::item,
              .number = next_,
              .next = next_ + 1,
-             .own_time = saturated_sum(item_.time, wall_offset_),
-             .bytes = encode(next_, item_)});
+             .own_time = times_.wall_time(item_.time, batch.now),
+             .is_old = next_ < old_until_,
+             .bytes = encode({.number = next_, .is_old = next_ < old_until_, .item = item_})});
 }
 
 void RingWatch::set_incomplete_before(ipc::Word item) noexcept {

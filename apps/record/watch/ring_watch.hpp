@@ -7,6 +7,7 @@
 #include "apps/record/format/loss.hpp"
 #include "apps/record/format/messages.hpp"
 #include "apps/record/watch/batch.hpp"
+#include "apps/record/watch/stream_times.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/memory/word.hpp"
@@ -18,9 +19,10 @@ namespace splinecast::apps::record {
 /// Reads the items of a ring, as a passive observer. One thread uses it.
 class RingWatch {
  public:
-  /// Begins with the oldest item that the ring still has; those before it are lost. `wall_offset`
-  /// is added to the times of a live stream.
-  RingWatch(std::uint32_t number, ipc::CheckedRegion<ipc::RingLayout> ring, Time wall_offset);
+  /// Begins with the oldest item that the ring still has; those before it are lost.
+  /// `times`: of the stream; outlives this.
+  RingWatch(std::uint32_t number, ipc::CheckedRegion<ipc::RingLayout> ring,
+            const StreamTimes& times);
 
   [[nodiscard]] const ipc::RegionHeader& header() const noexcept { return ring_.header; }
   [[nodiscard]] bool calls() const noexcept {
@@ -61,9 +63,9 @@ class RingWatch {
   std::uint32_t number_;
   ipc::CheckedRegion<ipc::RingLayout> ring_;
   ipc::WaypointRingReader reader_;
-  bool is_live_;
-  Time wall_offset_;
+  const StreamTimes& times_;
   ipc::RingItem item_;
+  ipc::Word old_until_;  ///< items before this number were there before
   ipc::Word next_ = 0;
   ipc::Word complete_from_ = 0;
   bool has_any_ = false;       ///< whether an item has been read

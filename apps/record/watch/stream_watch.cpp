@@ -27,16 +27,18 @@ bool StreamWatch::attach(Batch& batch, bool was_there) {
 }
 
 void StreamWatch::attach_ring(Batch& batch) {
-  auto ring =
-      std::make_unique<RingWatch>(number_, ipc::open_ring(stream_, false, trust_), wall_offset_);
+  auto region = ipc::open_ring(stream_, false, trust_);
+  auto times = std::make_unique<StreamTimes>(region.header, wall_offset_);
+  times->find_law(region.header, trust_);
+  auto ring = std::make_unique<RingWatch>(number_, std::move(region), *times);
   if (ring->is_retired()) return;  // its name will be removed
+  times_ = std::move(times);
   ring_ = std::move(ring);
   was_finished_ = false;
   owners_.ring = ring_->owner();
   put_options(batch);
-  const bool moves = is_live(ipc::stream_clock(ring_->header()));
-  const Time now = moves ? batch.now - wall_offset_ : Time::zero();
-  add_event(batch, {.stream = number_, .kind = EventKind::attached}, now, batch.now,
+  add_event(batch, {.stream = number_, .kind = EventKind::attached},
+            times_->stream_time(batch.now, Time::zero()), batch.now,
             fmt::format(R"("role":"producer","pid":{},"epoch":{})", owners_.ring.second,
                         owners_.ring.first));
 }
@@ -46,9 +48,8 @@ void StreamWatch::attach_board(Batch& batch, bool was_there) {
   auto board = ipc::open_board(stream_, false, trust_);
   if (board.header.stream_id != ring_->header().stream_id) return;  // of an earlier stream
   if (ipc::KnotBoardReader(board.region.bytes(), board.layout).retired()) return;
-  auto law = ipc::law_of(board.header, trust_);
-  board_ =
-      std::make_unique<BoardWatch>(number_, std::move(board), *ring_, wall_offset_, std::move(law));
+  times_->find_law(board.header, trust_);
+  board_ = std::make_unique<BoardWatch>(number_, std::move(board), *ring_, *times_);
   owners_.board = board_->owner();
   put_options(batch);
   board_->put_event(batch, EventKind::attached,
@@ -59,8 +60,7 @@ void StreamWatch::attach_board(Batch& batch, bool was_there) {
 
 void StreamWatch::put_options(Batch& batch) const {
   StreamOptions options{.stream = stream_, .waypoints = ring_->header()};
-  const bool moves = is_live(ipc::stream_clock(options.waypoints));
-  options.wall_offset = moves ? wall_offset_ : Time::zero();
+  options.wall_offset = times_->offset();
   if (board_) options.spline = board_->header();
   const std::string text =
       to_json(options).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -94,7 +94,8 @@ void StreamWatch::look_at_owners(Batch& batch) {
   const auto compare = [&](const auto& now, auto& known, const char* role) {
     if (now.first == known.first) return;
     known = now;
-    add_event(batch, {.stream = number_, .kind = EventKind::takeover}, batch.now, batch.now,
+    add_event(batch, {.stream = number_, .kind = EventKind::takeover},
+              times_->stream_time(batch.now, Time::zero()), batch.now,
               fmt::format(R"("role":"{}","pid":{},"epoch":{})", role, now.second, now.first));
   };
   if (ring_) compare(ring_->owner(), owners_.ring, "producer");
@@ -104,7 +105,8 @@ void StreamWatch::look_at_owners(Batch& batch) {
 /// Detaches from a stream, or from its board only if the ring stays.
 void StreamWatch::detach(Batch& batch, const char* role) {
   if (board_) board_->put_summary(batch);
-  add_event(batch, {.stream = number_, .kind = EventKind::retired}, batch.now, batch.now,
+  add_event(batch, {.stream = number_, .kind = EventKind::retired},
+            times_->stream_time(batch.now, Time::zero()), batch.now,
             fmt::format(R"("role":"{}")", role));
   was_finished_ = is_finished();
   board_.reset();

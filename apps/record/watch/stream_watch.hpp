@@ -11,6 +11,7 @@
 #include "apps/record/watch/batch.hpp"
 #include "apps/record/watch/board_watch.hpp"
 #include "apps/record/watch/ring_watch.hpp"
+#include "apps/record/watch/stream_times.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/time.hpp"
 
@@ -73,6 +74,7 @@ class StreamWatch {
     std::pair<ipc::Word, ipc::Word> board{};
   };
   Owners owners_;
+  std::unique_ptr<StreamTimes> times_;  ///< of the ring
   std::unique_ptr<RingWatch> ring_;
   std::unique_ptr<BoardWatch> board_;
   bool was_finished_ = false;  ///< of the stream from which it has detached

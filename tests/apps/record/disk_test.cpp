@@ -128,7 +128,9 @@ TEST_F(RecordDisk, ADumpWaitsForSpace) {
   Process recorder = start_recorder({stream.name(), "-o", disk.file("run.mcap"), "--last", "3600"});
   recorder.await_message("'" + stream.name() + "': recording");
   source.append_until(1000);
-  EXPECT_EQ(run({"record", "--trigger", std::to_string(recorder.pid())}).code, 0);
+  const Ended refused = run({"record", "--trigger", std::to_string(recorder.pid())});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.err.find("it is written as soon as that is possible"), std::string::npos);
   recorder.await_message("No space left on device");
   EXPECT_TRUE(recordings_in(disk.folder().string()).empty());
   std::filesystem::remove(disk.file("ballast"));

@@ -41,7 +41,9 @@ TEST_F(RecordDump, EachTriggerWritesAFileOfItsOwnThatVerifies) {
       {stream.name(), "-o", folder.path("run.mcap"), "--last", "3600", "--name", name});
   recorder.await_message("'" + stream.name() + "': recording");
   source.append_until(400);
-  EXPECT_EQ(run({"record", "--trigger", name}).code, 0);
+  const Ended triggered = run({"record", "--trigger", name});
+  EXPECT_EQ(triggered.code, 0);
+  EXPECT_EQ(triggered.out, folder.path("run.trigger-0001.mcap") + "\n");
   ASSERT_TRUE(await_file(folder.path("run.trigger-0001.mcap"), 5000));
   source.append_until(500);
   ASSERT_TRUE(await([&] {
@@ -78,11 +80,11 @@ TEST_F(RecordDump, AnEventOfTheListWritesTheMemory) {
   EXPECT_EQ(events.back()["event"], "refusal");
   // No segment is there: that is not a verified curve.
   const Ended ended = run({"replay", "--verify", folder.path("run.refusal-0001.mcap")});
-  EXPECT_EQ(ended.code, 3);
+  EXPECT_EQ(ended.code, 5);
   EXPECT_NE(ended.err.find("nothing to verify"), std::string::npos) << ended.err;
 }
 
-/// When a recording has read the waypoints and the events of a stream: publish times.
+/// When a recording has read the waypoints and the events of a stream: log times.
 struct ReadTimes {
   ReadTimes(const std::string& path, const std::string& stream) {
     const apps::TextFile file(path);
@@ -97,10 +99,10 @@ struct ReadTimes {
       if (topic == "/" + stream + "/waypoints") {
         const auto item = json["item"].get<std::uint64_t>();
         first_item = std::min(first_item, item);
-        items.emplace(item, message.publish_time);
-        last = std::max(last, message.publish_time);
+        items.emplace(item, message.log_time);
+        last = std::max(last, message.log_time);
       } else if (topic == "/" + stream + "/events" && json["event"] == "limit") {
-        limits.emplace(json["item"].get<std::uint64_t>(), message.publish_time);
+        limits.emplace(json["item"].get<std::uint64_t>(), message.log_time);
       }
     }
   }

@@ -73,11 +73,18 @@ TEST_F(Record, AnAlreadyRunningStreamVerifiesFromItsItemsOnTheRing) {
   recorder.await_message("'" + stream.name() + "': recording");
   source.append_until(3500);
   source.finish();
-  EXPECT_EQ(recorder.wait().code, 0);
+  const Ended ended = recorder.wait();
+  EXPECT_EQ(ended.code, 5);
+  EXPECT_NE(ended.err.find("items lost (before attaching "), std::string::npos) << ended.err;
   const auto found = verify(path);
-  EXPECT_EQ(found.code, 0) << found.err;
-  EXPECT_GE(found.stream(stream.name())["equal"], 1000);
-  EXPECT_TRUE(found.stream(stream.name())["difference"].is_null());
+  EXPECT_EQ(found.code, 5) << found.err;
+  const auto at = found.stream(stream.name());
+  EXPECT_GE(at["equal"], 1000);
+  EXPECT_TRUE(at["difference"].is_null());
+  const auto before = at["reasons"]["before attaching"]["items"].get<std::size_t>();
+  EXPECT_GE(before, 3000 - 1024);
+  EXPECT_EQ(at["items"].get<std::size_t>() + before, 3501);
+  EXPECT_EQ(at["unaccounted"], 0);
 }
 
 TEST_F(Record, EventsHaveTheirCauses) {
@@ -120,7 +127,8 @@ TEST_F(Record, PatternsFindLateStreamsAndARecreatedStream) {
     remove_stream(stream.name());
   }
   recorder.signal(SIGTERM);
-  EXPECT_EQ(recorder.wait().code, 0);
+  const Ended ended = recorder.wait();
+  EXPECT_EQ(ended.code, 0) << ended.err;
   expect_verified(path, stream.name());
   EXPECT_EQ(verify(path).stream(stream.name())["parts"], 2);
 }

@@ -58,7 +58,7 @@ class SteppedStream {
 struct Verified {
   int code = 0;
   std::string err;
-  nlohmann::json json;  ///< null unless the code is 0 or 3
+  nlohmann::json json;  ///< null unless the code is 0, 3 or 5
 
   [[nodiscard]] nlohmann::json stream(const std::string& name) const {
     return json.is_object() ? json["streams"].value(name, nlohmann::json()) : nlohmann::json();

@@ -125,6 +125,9 @@ TEST(Verification, FindsAnyOtherDifference) {
   EXPECT_EQ(found([](SegmentCopy& at) { flip_last_bit(at.waypoint[1]); }), "waypoint");
   EXPECT_EQ(found([](SegmentCopy& at) { at.right += Time(1); }), "right end");
   EXPECT_EQ(found([](SegmentCopy& at) { at.kind = SegmentKind::stop; }), "kind");
+  EXPECT_EQ(found([](SegmentCopy& at) { at.acceleration_step[1] += 1e-3; }), "acceleration step");
+  EXPECT_EQ(found([](SegmentCopy& at) { at.acceleration_step[1] *= -1; }), "acceleration step");
+  EXPECT_EQ(found([](SegmentCopy& at) { at.acceleration_step.clear(); }), "acceleration step");
   EXPECT_NE(found([](SegmentCopy& at) { at.newer_knots = 3; }), "");
   EXPECT_NE(found([](SegmentCopy& at) { at.newer_knots = 4'000'000'000; }), "");
   EXPECT_NE(found([](SegmentCopy& at) { at.number = 7; }), "");
