@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "apps/record/format/messages.hpp"
 #include "apps/record/format/options.hpp"
+#include "ipc/options/stream.hpp"
 
 namespace splinecast::apps::record {
 namespace {
@@ -44,7 +47,7 @@ void append_number(std::string& text, double value) {
   }
 }
 
-JsonMessages::JsonMessages(const ipc::RegionHeader& header) {
+JsonMessages::JsonMessages(const ipc::RegionHeader& header) : units_(ipc::dimension_units(header)) {
   for (const std::string& name : names_in_json(header)) keys_.push_back(json_text(name) + ":");
 }
 
@@ -97,40 +100,63 @@ std::string_view JsonMessages::state(Time time, std::span<const double> position
 }
 
 std::string JsonMessages::schema(std::string_view title, std::string_view further) const {
-  std::string each;
-  for (const std::string& key : keys_) {
-    if (!each.empty()) each += ',';
-    each += key + R"({"type":"number"})";
-  }
   std::string text =
       fmt::format(R"({{"title":"{}","type":"object","properties":{{{})", title, kTimeProperty);
   text += further;
-  for (const std::string_view part : {"position", "velocity", "acceleration"}) {
-    append(text, R"(,"{}":{{"type":"object","properties":{{{}}}}})", part, each);
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kParts{
+      {{"position", ""}, {"velocity", "/s"}, {"acceleration", "/s²"}}};
+  for (const auto& [part, per_time] : kParts) {
+    append(text, R"(,"{}":{{"type":"object","properties":{{)", part);
+    for (std::size_t d = 0; d < keys_.size(); ++d) {
+      const std::string unit = units_[d].empty() ? "" : units_[d] + std::string(per_time);
+      append(text, R"({}{}{{"type":"number","description":{}}})", d > 0 ? "," : "", keys_[d],
+             json_text(unit.empty() ? "no unit is known" : unit));
+    }
+    text += "}}";
   }
   return text + "}}";
 }
 
 std::string JsonMessages::waypoint_schema() const {
-  return schema("splinecast.Waypoint",
-                R"(,"kind":{"type":"string"},"item":{"type":"integer"},"old":{"type":"boolean"},)"
-                R"("condition":{"type":"string"},"count":{"type":"integer"},)"
-                R"("blend_ns":{"type":"integer"},"rate":{"type":"number"},)"
-                R"("length_ns":{"type":"integer"},"commander":{"type":"integer"},)"
-                R"("request":{"type":"integer"})");
+  return schema(
+      "splinecast.Waypoint",
+      R"(,"kind":{"type":"string"},"item":{"type":"integer"},"old":{"type":"boolean"},)"
+      R"("condition":{"type":"string"},"count":{"type":"integer"},)"
+      R"("blend_ns":{"type":"integer","description":"ns"},"rate":{"type":"number"},)"
+      R"("length_ns":{"type":"integer","description":"ns"},"commander":{"type":"integer"},)"
+      R"("request":{"type":"integer"})");
 }
 
 std::string JsonMessages::state_schema() const { return schema("splinecast.State", ""); }
 
 std::string JsonMessages::event_schema() {
-  return fmt::format(
-      R"({{"title":"splinecast.Event","type":"object","properties":{{{},)"
-      R"("event":{{"type":"string"}},"text":{{"type":"string"}},"count":{{"type":"integer"}},)"
-      R"("item":{{"type":"integer"}},"reason":{{"type":"string"}},"role":{{"type":"string"}},)"
-      R"("pid":{{"type":"integer"}},"epoch":{{"type":"integer"}},)"
-      R"("dimension":{{"type":"string"}},"limit_kind":{{"type":"string"}},)"
-      R"("value":{{"type":"number"}},"limit":{{"type":"number"}},"refused":{{"type":"boolean"}}}}}})",
-      kTimeProperty);
+  std::string text =
+      fmt::format(R"({{"title":"splinecast.Event","type":"object","properties":{{{},)"
+                  R"("event":{{"type":"string"}})",
+                  kTimeProperty);
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kTypes{{
+      {"string", "reason role dimension limit_kind state stopper"},
+      {"integer", "count item pid epoch request missed"},
+      {"integer", "items segments refusals others first_item first_segment"},
+      {"integer:time of the stream, ns", "at_ns"},
+      {"number:in the unit of the dimension, per s, s² or s³ by limit_kind", "value limit"},
+      {"boolean", "refused"},
+      {"boolean:it occurred before the recorder attached", "old"},
+      {"string:of earlier versions", "text"},
+  }};
+  for (const auto& [type, names] : kTypes) {
+    const auto colon = type.find(':');
+    const std::string_view comment =
+        colon == std::string_view::npos ? std::string_view() : type.substr(colon + 1);
+    for (std::size_t at = 0; at < names.size();) {
+      const std::size_t end = std::min(names.find(' ', at), names.size());
+      append(text, R"(,"{}":{{"type":"{}")", names.substr(at, end - at), type.substr(0, colon));
+      if (!comment.empty()) append(text, R"(,"description":"{}")", comment);
+      text += '}';
+      at = end + 1;
+    }
+  }
+  return text + "}}";
 }
 
 }  // namespace splinecast::apps::record

@@ -38,6 +38,7 @@ class JsonMessages {
   [[nodiscard]] std::string schema(std::string_view title, std::string_view further) const;
 
   std::vector<std::string> keys_;  ///< `"name":` of each dimension, quoted and escaped
+  std::vector<std::string> units_;
   std::string text_;
 };
 

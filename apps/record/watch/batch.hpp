@@ -10,7 +10,7 @@
 
 namespace splinecast::apps::record {
 
-/// The kinds of events.
+/// The kinds of events. JsonMessages::event_schema() has the members of all.
 enum class EventKind : std::uint8_t {
   attached,
   underrun,

@@ -106,12 +106,12 @@ class VectorView : public std::span<const double> {
 };
 
 }  // namespace splinecast
-
+/// @cond
 template <>
 inline constexpr bool std::ranges::enable_borrowed_range<splinecast::VectorView> = true;
 template <>
 inline constexpr bool std::ranges::enable_view<splinecast::VectorView> = true;
-
+/// @endcond
 namespace [[gnu::visibility("default")]] splinecast {
 
 /// The output of a sample: position [unit], velocity [unit/s], acceleration [unit/s²] and jerk

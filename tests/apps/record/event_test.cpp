@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/record/format/json.hpp"
 #include "ipc/roles/internals.hpp"
 #include "tests/apps/record/recorded.hpp"
 
@@ -104,6 +105,12 @@ struct EventRecorder {
     EXPECT_EQ(process.wait().code, 0);
     const auto events = messages_of(dump(), "/" + stream + "/events");
     EXPECT_TRUE(std::ranges::any_of(events, [&](const auto& e) { return e["event"] == kind; }));
+    const auto schema = nlohmann::json::parse(apps::record::JsonMessages::event_schema());
+    for (const auto& event : events) {
+      for (const auto& [name, value] : event.items()) {
+        EXPECT_TRUE(schema["properties"].contains(name)) << name;
+      }
+    }
     const Verified found = verify(dump());
     EXPECT_EQ(found.code, code) << found.err << found.json.dump(1);
     EXPECT_GT(found.stream(stream)["equal"], 0);
