@@ -50,6 +50,11 @@ class EventCounts {
   std::optional<JsonFields> fields_{};
 };
 
+/// Whether `record` wrote a channel. Messages that it saw in one look have the same time.
+bool is_recorded_here(const mcap::Channel& channel) noexcept {
+  return channel.schema_name.starts_with("splinecast.") || channel.message_encoding == "splinecast";
+}
+
 /// Whether this program recorded the file in format 1: then the publish time of a message is when
 /// it was seen.
 bool is_of_format_1(const mcap::Reader& reader) {
@@ -72,8 +77,9 @@ FileContents of_mcap(InputFile& file) {
   try {
     while (reader.next(message)) {
       Times& both = times[message.channel];
-      both.log.add(message.log_time);
-      both.publish.add(message.publish_time);
+      const bool is_own = is_recorded_here(*message.channel);
+      both.log.add(message.log_time, is_own);
+      both.publish.add(message.publish_time, is_own);
       events.take(message);
     }
   } catch (const InputError& damage) {
@@ -87,8 +93,7 @@ FileContents of_mcap(InputFile& file) {
   }
   for (const mcap::Channel& channel : reader.channels()) {
     const Times& both = times[&channel];
-    const bool is_own =
-        channel.schema_name.starts_with("splinecast.") || channel.message_encoding == "splinecast";
+    const bool is_own = is_recorded_here(channel);
     contents.topics.push_back({.name = channel.topic,
                                .type = std::string(channel.schema_name),
                                .encoding = channel.message_encoding,

@@ -24,7 +24,8 @@ class TimeSpans {
  public:
   static constexpr std::size_t kPauses = 3;
 
-  void add(Time time);
+  /// `may_repeat`: the same time again is in order.
+  void add(Time time, bool may_repeat = false);
 
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
   [[nodiscard]] std::optional<Time> first() const noexcept { return first_; }

@@ -4,9 +4,10 @@
 
 namespace splinecast::apps {
 
-void TimeSpans::add(Time time) {
+void TimeSpans::add(Time time, bool may_repeat) {
   ++count_;
-  if (last_ && time <= *last_) ++not_increasing_;
+  const bool is_in_order = !last_ || time > *last_ || (may_repeat && time == *last_);
+  if (!is_in_order) ++not_increasing_;
   if (last_ && time > *last_) {
     const Pause pause{.begin = *last_, .length = time - *last_};
     const bool is_long = pauses_.size() < kPauses || pause.length > pauses_.back().length;
