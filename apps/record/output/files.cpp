@@ -49,6 +49,7 @@ Files::Files(const OutputOptions& options)
   const bool is_numbered = options_.max_bytes || options_.max_files;
   const std::string path = is_numbered ? names_.next("", 1) : names_.path();
   file_ = std::make_unique<RecordingFile>(path, options_.file);
+  memory_.need_from(0);
   own_.push_back({path, file_->id()});
   report_.files.push_back(path);
 }
@@ -168,7 +169,7 @@ OutputReport Files::report() const {
 TriggerResult Files::trigger(Time now) {
   const std::size_t files = report_.files.size();
   if (keeps_memory()) {
-    if (file_) close_file(now);
+    if (file_) (void)close_file(now);
     dumps_.take_trigger(now);
     begin_dump("trigger", now);
   } else {
@@ -190,9 +191,9 @@ void Files::begin_dump(std::string_view why, Time now) {
 }
 
 void Files::end_dump(Time now) {
-  close_file(now);
+  if (!close_file(now)) return;
   wants_file_ = false;
-  memory_.need_from(memory_.added());
+  memory_.need_from(RecordMemory::kNone);
   if (const auto next = dumps_.close(now)) begin_dump(*next, now);
 }
 
@@ -266,22 +267,25 @@ void Files::fail(const std::string& why, Time now) {
   next_try_ = now + kTryAgain;
 }
 
-void Files::close_file(Time now) {
+/// Completes the file. Returns false if that failed: then another one should follow, with what
+/// this one lacks.
+bool Files::close_file(Time now) {
   write_accounts(now);
   file_->finish();
-  report_.bytes += file_->written();
   if (!file_->why().empty()) {
-    say(fmt::format("{}: {}", file_->path(), file_->why()));
-    ++report_.failures;
+    fail(file_->why(), now);
+    return false;
   }
+  report_.bytes += file_->written();
   note_whole_chunks();
   file_.reset();
   has_chunk_ = false;
+  return true;
 }
 
 void Files::rotate(Time now) {
   if (!file_) return;
-  close_file(now);
+  (void)close_file(now);
   is_part_ = true;
   next_try_ = now;
   tick(now);
@@ -347,15 +351,13 @@ void Files::check_file(Time now) {
 
 void Files::finish(Time now) {
   if (keeps_memory() && !wants_file_ && memory_.added() > whole_until_) begin_dump("end", now);
-  if (wants_file_ && !file_) {
+  const bool is_complete = file_ && close_file(now);
+  if (wants_file_ && !is_complete && !file_) {
     next_try_ = now;
     try_again(now);
+    if (file_) (void)close_file(now);
   }
-  if (file_) {
-    close_file(now);
-  } else if (wants_file_) {
-    memory_.clear(forget());
-  }
+  if (wants_file_) memory_.clear(forget());  // counts what is in no file
 }
 
 }  // namespace splinecast::apps::record

@@ -86,7 +86,7 @@ class Files {
   [[nodiscard]] bool keeps_memory() const noexcept { return options_.last.has_value(); }
   bool open(Time now);
   void write_memory(Time now);
-  void close_file(Time now);
+  bool close_file(Time now);
   void check_file(Time now);
   void end_chunk_if_due(Time now);
   void end_chunk(Time now);

@@ -70,6 +70,10 @@ void RecordMemory::empty(Stream& stream, const Forget& forget) {
   }
 }
 
+bool RecordMemory::may_forget_before(std::uint64_t sequence) const noexcept {
+  return bytes_ > kMostHeld || (!holds_ && sequence <= needed_from_);
+}
+
 bool RecordMemory::may_forget(const Kept& kept) const noexcept {
   return bytes_ > kMostHeld || (!holds_ && kept.sequence < needed_from_);
 }
@@ -96,8 +100,12 @@ void RecordMemory::tidy(Time now, const Forget& forget) {
 
 void RecordMemory::trim(Stream& stream, Time now, const Forget& forget) {
   const Time oldest = now - window_;
-  // The newest start that is old enough is the one from which everything is kept.
-  while (stream.starts.size() > 1 && stream.starts[1].seen <= oldest) stream.starts.pop_front();
+  // The newest start that is old enough is the one from which everything is kept. What is needed
+  // has a start before it, else it could not be verified.
+  while (stream.starts.size() > 1 && stream.starts[1].seen <= oldest &&
+         may_forget_before(stream.starts[1].sequence)) {
+    stream.starts.pop_front();
+  }
   const bool has_start = !stream.starts.empty() && stream.starts.front().seen <= oldest;
   if (has_start) {
     const Start& start = stream.starts.front();

@@ -29,8 +29,9 @@ class RecordMemory {
   void add(Record record, const Forget& forget);
 
   /// Records from this sequence number on are not in a file yet, and should be: forgets none of
-  /// them until all records take kMostHeld.
+  /// them until all records take kMostHeld. kNone: no file is wanted.
   void need_from(std::uint64_t sequence) noexcept { needed_from_ = sequence; }
+  static constexpr std::uint64_t kNone = ~std::uint64_t{0};
   /// Forgets nothing until the records take kMostHeld: no file can be written.
   void hold(bool holds) noexcept { holds_ = holds; }
   static constexpr std::size_t kMostHeld = std::size_t{64} << 20U;
@@ -57,8 +58,6 @@ class RecordMemory {
   [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
 
  private:
-  static constexpr std::uint64_t kNone = ~std::uint64_t{0};
-
   struct Kept {
     std::uint64_t sequence;
     Record record;
@@ -85,6 +84,7 @@ class RecordMemory {
   void trim(Stream& stream, Time now, const Forget& forget);
   void pop(Stream& stream, std::deque<Kept>& from, const Forget& forget);
   [[nodiscard]] bool may_forget(const Kept& kept) const noexcept;
+  [[nodiscard]] bool may_forget_before(std::uint64_t sequence) const noexcept;
   [[nodiscard]] bool may_erase(const Stream& stream) const noexcept;
 
   Time window_;

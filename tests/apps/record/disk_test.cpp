@@ -118,6 +118,28 @@ TEST_F(RecordDisk, AFullDiskIsReportedAndRecordingContinuesWhenItHasSpace) {
   expect_verified(paths[0], stream.name());
 }
 
+/// The disk is full when the recorder ends: what it has read and cannot write is lost, and counted.
+TEST_F(RecordDisk, AFullDiskAtTheEndIsALoss) {
+  REQUIRE_PRIVATE_SHARED_MEMORY();
+  const PrivateSharedMemory disk("3m");
+  const TestStream stream;
+  constexpr std::size_t kMany = 4096;
+  SteppedStream source(stream.name(), {.capacity = kMany}, kMany);
+  Process recorder = start_recorder(
+      {stream.name(), "-o", disk.file("run.mcap"), "--compression", "none", "--json"});
+  recorder.await_message("'" + stream.name() + "': recording");
+  { std::ofstream(disk.file("ballast")) << std::string(4 * kMiB, 'x'); }
+  source.append_until(3000);
+  source.finish();
+  recorder.await_message("No space left on device");
+  recorder.signal(SIGINT);
+  const Ended ended = recorder.wait();
+  EXPECT_EQ(ended.code, 5) << ended.err;
+  const auto report = nlohmann::json::parse(ended.out);
+  EXPECT_GT(report["reasons"]["disk"]["items"], 0);
+  EXPECT_EQ(report["items"].get<int>() + report["lost_items"].get<int>(), 3001);
+}
+
 /// A dump that does not fit is written when there is space.
 TEST_F(RecordDisk, ADumpWaitsForSpace) {
   REQUIRE_PRIVATE_SHARED_MEMORY();
