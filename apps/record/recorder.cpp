@@ -58,7 +58,9 @@ class Recorder {
     watcher_.finish(batch_);
     put(clock_.now());
     overflow_.prepend_to(batch_);
-    return writer_.finish(std::move(batch_));
+    OutputReport report = writer_.finish(std::move(batch_));
+    answer_triggers();
+    return report;
   }
 
  private:
@@ -87,12 +89,15 @@ class Recorder {
     const Time now = clock_.now();
     if (now < next_trigger_) return;
     next_trigger_ = now + std::chrono::milliseconds(10);
-    if (const auto done = writer_.take_trigger_result()) {
-      triggers_.answer(done->is_done, done->text);
-    }
+    answer_triggers();
     if (!triggers_.poll()) return;
     put(now);
     writer_.trigger();
+  }
+
+  void answer_triggers() {
+    const auto done = writer_.take_trigger_result();
+    if (done) triggers_.answer(done->is_done, done->text);
   }
 
   const RecordOptions& options_;

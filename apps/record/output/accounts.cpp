@@ -52,25 +52,29 @@ LossCounts& of(Account& account, LossCause cause) {
 
 }  // namespace
 
-void Accounts::begin(Stream& stream, const Record& options) {
-  if (stream.id != options.number) {
-    if (stream.id != 0) retire(stream);
-    stream = {.name = name_in(options), .id = options.number};
+void Accounts::begin(const Record& options) {
+  const auto [known, is_first] = present_.try_emplace(options.stream, options.number);
+  if (!is_first && known->second != options.number) {
+    end(options.stream);
+    known->second = options.number;
   }
+  const auto [found, is_new] = streams_.try_emplace({options.stream, options.number});
+  Stream& stream = found->second;
+  if (is_new) stream.name = name_in(options);
   const bool has_solver = options.next != 0;
   if (has_solver && stream.has_solver) stream.segments_before = stream.account.segments.end;
   stream.has_solver = stream.has_solver || has_solver;
   stream.has_ended = false;
+  stream.newest = options.seen;
 }
 
 void Accounts::add(Record& record) {
-  Stream& stream = streams_[record.stream];
+  if (record.kind == RecordKind::options) return begin(record);
+  Stream& stream = streams_[{record.stream, present(record.stream)}];
   Account& account = stream.account;
   stream.newest = record.seen;
   LossCounts& missed = of(account, LossCause::overwritten);
   switch (record.kind) {
-    case RecordKind::options:
-      return begin(stream, record);
     case RecordKind::item:
       record.is_counted = count(account.items, missed, &LossCounts::items, range_of(record));
       break;
@@ -95,9 +99,8 @@ void Accounts::add(Record& record) {
 
 void Accounts::forget(const Record& record, ipc::Word stream_id, bool was_wanted) {
   if (!record.is_counted) return;
-  const auto found = streams_.find(record.stream);
-  const bool is_there =
-      found != streams_.end() && (stream_id == 0 || found->second.id == stream_id);
+  const auto found = streams_.find({record.stream, stream_id});
+  const bool is_there = found != streams_.end();
   Account& account = is_there ? found->second.account : ended_;
   LossCounts& lost = of(account, LossCause::file);
   const ipc::Word count = record.next - record.number;
@@ -114,16 +117,23 @@ void Accounts::forget(const Record& record, ipc::Word stream_id, bool was_wanted
 }
 
 void Accounts::end(std::uint32_t stream) noexcept {
-  const auto found = streams_.find(stream);
+  const auto found = streams_.find({stream, present(stream)});
   if (found != streams_.end()) found->second.has_ended = true;
 }
 
-void Accounts::tidy(Time oldest) {
+void Accounts::tidy(Time oldest, const std::function<bool(const Key& stream)>& needed) {
   std::erase_if(streams_, [&](const auto& entry) {
-    const bool is_old = entry.second.has_ended && entry.second.newest < oldest;
-    if (is_old) retire(entry.second);
-    return is_old;
+    const auto& [key, stream] = entry;
+    if (!stream.has_ended || stream.newest >= oldest || needed(key)) return false;
+    retire(stream);
+    if (present(key.first) == key.second) present_.erase(key.first);
+    return true;
   });
+}
+
+ipc::Word Accounts::present(std::uint32_t stream) const noexcept {
+  const auto found = present_.find(stream);
+  return found != present_.end() ? found->second : 0;
 }
 
 void Accounts::retire(const Stream& stream) {
@@ -133,30 +143,30 @@ void Accounts::retire(const Stream& stream) {
       fmt::format("'{}': {}", ipc::printable(stream.name), lost_in_words(stream.account.lost)));
 }
 
-const Account* Accounts::changed(std::uint32_t stream, bool is_needed) {
+const Account* Accounts::changed(const Key& stream, bool is_needed) {
   const auto found = streams_.find(stream);
   if (found == streams_.end() || !(found->second.is_changed || is_needed)) return nullptr;
   found->second.is_changed = false;
   return &found->second.account;
 }
 
-std::vector<std::uint32_t> Accounts::all_changed() const {
-  std::vector<std::uint32_t> numbers;
-  for (const auto& [number, stream] : streams_) {
-    if (stream.is_changed) numbers.push_back(number);
+std::vector<Accounts::Key> Accounts::all_changed() const {
+  std::vector<Key> keys;
+  for (const auto& [key, stream] : streams_) {
+    if (stream.is_changed) keys.push_back(key);
   }
-  return numbers;
+  return keys;
 }
 
 Account Accounts::total() const {
   Account sum = ended_;
-  for (const auto& [number, stream] : streams_) sum += stream.account;
+  for (const auto& [key, stream] : streams_) sum += stream.account;
   return sum;
 }
 
 std::vector<std::string> Accounts::losses() const {
   std::vector<std::string> lines = ended_losses_;
-  for (const auto& [number, stream] : streams_) {
+  for (const auto& [key, stream] : streams_) {
     if (stream.account.all_lost().all() == 0 || lines.size() >= kMostNamed) continue;
     lines.push_back(
         fmt::format("'{}': {}", ipc::printable(stream.name), lost_in_words(stream.account.lost)));

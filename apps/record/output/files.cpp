@@ -84,9 +84,11 @@ void Files::take(Record record) {
     }
   }
   const Time now = record.seen;
+  const bool is_data = record.kind != RecordKind::summary;
   const std::uint32_t stream = record.stream;
   const bool is_end = is_retirement(record);
   memory_.add(std::move(record), forget());
+  if (is_data) data_until_ = memory_.added();
   if (is_end) end_stream(stream, now);
   if (file_ && file_->failed()) return fail(file_->why(), now);
   if (file_ && memory_.bytes() > RecordMemory::kMostHeld / 2) end_chunk(now);
@@ -97,7 +99,7 @@ void Files::end_stream(std::uint32_t stream, Time now) {
   memory_.end(stream);
   accounts_.end(stream);
   if (!file_) return;
-  write_account(stream, now, false);
+  write_account({stream, accounts_.present(stream)}, now, false);
   file_->end(stream);
 }
 
@@ -107,7 +109,7 @@ void Files::write(const Record& record) {
     file_->write(record);
   } catch (const std::runtime_error& error) {
     say(fmt::format("{}: {}", file_->path(), error.what()));
-    accounts_.forget(record, 0, true);
+    accounts_.forget(record, accounts_.present(record.stream), true);
   }
 }
 
@@ -135,11 +137,11 @@ void Files::note_whole_chunks() noexcept {
 }
 
 /// Writes the account of a stream, if the file has the stream.
-void Files::write_account(std::uint32_t stream, Time now, bool is_needed) {
-  if (!file_->has(stream)) return;
+void Files::write_account(const Accounts::Key& stream, Time now, bool is_needed) {
+  if (!file_->has(stream.first, stream.second)) return;
   const Account* const account = accounts_.changed(stream, is_needed);
   if (account == nullptr) return;
-  write({.stream = stream,
+  write({.stream = stream.first,
          .kind = RecordKind::account,
          .own_time = now,
          .seen = now,
@@ -148,13 +150,13 @@ void Files::write_account(std::uint32_t stream, Time now, bool is_needed) {
 
 void Files::write_accounts(Time now) {
   if (!file_ || file_->failed()) return;
-  for (const std::uint32_t stream : accounts_.all_changed()) write_account(stream, now, false);
+  for (const auto& stream : accounts_.all_changed()) write_account(stream, now, false);
 }
 
 void Files::say_losses() {
   const Account total = accounts_.total();
   const LossCounts all = total.all_lost();
-  if (all.items == said_.items && all.segments == said_.segments) return;
+  if (all.all() == said_.all()) return;
   said_ = all;
   say(lost_in_words(total.lost) + " so far");
 }
@@ -221,6 +223,7 @@ bool Files::open(Time now) {
   note_whole_chunks();
   memory_.hold(false);
   opened_ = now;
+  repeated_ = file_->bytes();
   lost_.clear();
   own_.push_back({path, file_->id()});
   report_.files.push_back(path);
@@ -249,7 +252,7 @@ void Files::write_losses(const Record& options, Time now) {
     for (const Loss& loss : found->second.losses()) add_loss(batch, options.stream, loss, now);
   }
   for (const Record& record : batch.records) write(record);
-  write_account(options.stream, now, true);
+  write_account({options.stream, options.number}, now, true);
 }
 
 void Files::fail(const std::string& why, Time now) {
@@ -304,7 +307,9 @@ void Files::tick(Time now) {
     next_tidy_ = now + kTidy;
     memory_.tidy(now, forget());
     write_accounts(now);
-    accounts_.tidy(now - options_.last.value_or(Time::zero()) - kKeepAccount);
+    accounts_.tidy(now - kKeepAccount, [this](const Accounts::Key& stream) {
+      return memory_.has(stream.first, stream.second);
+    });
     say_losses();
   }
   try_again(now);
@@ -313,10 +318,15 @@ void Files::tick(Time now) {
   if (!file_) return;
   if (dumps_.is_due(now)) {
     end_dump(now);
-  } else if (options_.max_bytes && file_->bytes() >= *options_.max_bytes &&
-             now - opened_ >= kShortest) {
+  } else if (is_full() && now - opened_ >= kShortest) {
     rotate(now);
   }
+}
+
+/// Whether the file has its size, and not only by what it repeats of an earlier one.
+bool Files::is_full() const noexcept {
+  return options_.max_bytes && file_->bytes() >= *options_.max_bytes &&
+         file_->bytes() - repeated_ >= *options_.max_bytes / 2;
 }
 
 /// Opens a file if one should be open.
@@ -350,7 +360,7 @@ void Files::check_file(Time now) {
 }
 
 void Files::finish(Time now) {
-  if (keeps_memory() && !wants_file_ && memory_.added() > whole_until_) begin_dump("end", now);
+  if (keeps_memory() && !wants_file_ && data_until_ > whole_until_) begin_dump("end", now);
   const bool is_complete = file_ && close_file(now);
   if (wants_file_ && !is_complete && !file_) {
     next_try_ = now;

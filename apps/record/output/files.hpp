@@ -93,11 +93,12 @@ class Files {
   void try_again(Time now);
   void fail(const std::string& why, Time now);
   void note_whole_chunks() noexcept;
+  [[nodiscard]] bool is_full() const noexcept;
   void rotate(Time now);
   void remove_oldest();
   void write(const Record& record);
   void write_losses(const Record& options, Time now);
-  void write_account(std::uint32_t stream, Time now, bool is_needed);
+  void write_account(const Accounts::Key& stream, Time now, bool is_needed);
   void write_accounts(Time now);
   void say_losses();
   [[nodiscard]] RecordMemory::Forget forget();
@@ -118,11 +119,13 @@ class Files {
   bool is_part_ = false;     ///< whether the next file continues one that has what is older
   DumpSchedule dumps_;
   Time opened_{};
-  Time chunk_since_{};  ///< when the oldest record of the open chunk was written
+  std::uint64_t repeated_ = 0;  ///< bytes with which the file began
+  Time chunk_since_{};          ///< when the oldest record of the open chunk was written
   bool has_chunk_ = false;
   Time next_check_{};
   Time next_tidy_{};
   Time next_try_{};
+  std::uint64_t data_until_ = 0;   ///< number after the newest record that is not a summary
   std::uint64_t whole_until_ = 0;  ///< records before this number are in whole chunks, or dumped
   Accounts accounts_;
   std::map<std::pair<std::uint32_t, ipc::Word>, LossList> lost_;  ///< by stream and its id

@@ -1,5 +1,6 @@
 #include "apps/record/output/memory.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -83,6 +84,15 @@ bool RecordMemory::may_erase(const Stream& stream) const noexcept {
   return stream.items.empty() && stream.others.empty() && !keeps_options;
 }
 
+bool RecordMemory::has(std::uint32_t stream, ipc::Word id) const {
+  const auto [first, last] = streams_.equal_range(stream);
+  return std::any_of(first, last, [id](const auto& entry) {
+    const Stream& kept = entry.second;
+    return kept.options && kept.options->number == id &&
+           !(kept.items.empty() && kept.others.empty());
+  });
+}
+
 void RecordMemory::end(std::uint32_t stream) noexcept {
   const auto [first, last] = streams_.equal_range(stream);
   if (first != last) std::prev(last)->second.has_ended = true;
@@ -146,11 +156,14 @@ void RecordMemory::give(Extent extent,
                         const std::function<void(const Record& record)>& take) const {
   for (const auto& [number, stream] : streams_) {
     if (!stream.options) continue;
-    const bool is_short = extent == Extent::newest_start && !stream.starts.empty();
-    const Start from = is_short ? stream.starts.back() : Start{};
+    const bool is_short = extent == Extent::newest_start;
+    const bool has_start = !stream.starts.empty();
+    const Start none{.sequence = needed_from_, .first_item = 0, .seen = {}};
+    const Start from = !is_short ? Start{} : has_start ? stream.starts.back() : none;
     take(*stream.options);
     for (const Kept& kept : stream.items) {
-      if (kept.record.number >= from.first_item) take(kept.record);
+      const bool is_new = has_start || kept.sequence >= from.sequence;
+      if (is_new && kept.record.number >= from.first_item) take(kept.record);
     }
     for (const Kept& kept : stream.others) {
       if (kept.sequence >= from.sequence) take(kept.record);

@@ -39,7 +39,7 @@ class RecordMemory {
   static constexpr std::size_t kMostEmpty = 4096;
 
   /// Which records give() gives: all, or of each stream those from the newest place on at which
-  /// verification can begin.
+  /// verification can begin, and without such a place those that are not in a file yet.
   enum class Extent : std::uint8_t { all, newest_start };
   /// Gives kept records: for each stream its options, items, and the others.
   void give(Extent extent, const std::function<void(const Record& record)>& take) const;
@@ -52,6 +52,9 @@ class RecordMemory {
 
   /// Forgets all records.
   void clear(const Forget& forget);
+
+  /// Whether it has anything of a stream.
+  [[nodiscard]] bool has(std::uint32_t stream, ipc::Word id) const;
 
   /// Number of records added so far.
   [[nodiscard]] std::uint64_t added() const noexcept { return added_; }

@@ -99,6 +99,7 @@ void RecordingFile::begin_stream(const Record& record) {
   const std::string_view text = text_of(std::span(record.bytes).subspan(1));
   const StreamOptions options = parse_options(text);
   Stream stream(options, options_.states_hz);
+  stream.id = record.number;
   const std::string topic = "/" + options.stream;
   stream.waypoints =
       add_channel(topic + "/waypoints", "splinecast.Waypoint", stream.json.waypoint_schema());

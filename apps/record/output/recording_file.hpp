@@ -46,8 +46,11 @@ class RecordingFile {
   /// The stream has ended: forgets what its messages are made with.
   void end(std::uint32_t stream) { streams_.erase(stream); }
 
-  /// Whether the file has the stream.
-  [[nodiscard]] bool has(std::uint32_t stream) const { return streams_.contains(stream); }
+  /// Whether the stream with this id is the file's present one of its number.
+  [[nodiscard]] bool has(std::uint32_t stream, ipc::Word id) const {
+    const auto found = streams_.find(stream);
+    return found != streams_.end() && found->second.id == id;
+  }
   /// Whether the file can have another stream.
   [[nodiscard]] bool can_begin_stream() const noexcept { return writer_->has_numbers(4); }
 
@@ -76,6 +79,7 @@ class RecordingFile {
   struct Stream {
     Stream(const StreamOptions& options, double states_hz);
 
+    ipc::Word id = 0;
     std::uint16_t exact = 0, waypoints = 0, events = 0, states = 0;
     std::size_t dimensions;
     JsonMessages json;

@@ -5,11 +5,15 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "apps/process/exit_codes.hpp"
@@ -67,6 +71,22 @@ int listen_at(const TriggerAddress& address, const std::string& recorder) {
       fmt::format("cannot listen for triggers at {}: {}", address.path(), std::strerror(error)));
 }
 
+/// Removes the sockets of processes that were killed.
+void remove_stale(const std::string& folder) {
+  constexpr std::string_view kBegin = "splinecast.record.";
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(kBegin)) continue;
+    const std::string process = name.substr(kBegin.size());
+    const bool is_process = !process.empty() && std::ranges::all_of(process, [](char c) {
+      return c >= '0' && c <= '9';
+    });
+    if (!is_process || std::filesystem::exists("/proc/" + process, error)) continue;
+    unlink(entry.path().c_str());
+  }
+}
+
 void close_all(std::vector<int>& connections) noexcept {
   for (const int connection : connections) close(connection);
   connections.clear();
@@ -77,6 +97,7 @@ void close_all(std::vector<int>& connections) noexcept {
 TriggerServer::TriggerServer(const std::string& name) {
   const std::string folder = own_runtime_folder();
   const FolderLock lock(folder);
+  remove_stale(folder);
   const std::array names{std::to_string(getpid()), name};
   for (std::size_t i = 0; i < names.size() && !names.at(i).empty(); ++i) {
     try {

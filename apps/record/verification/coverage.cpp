@@ -6,6 +6,7 @@ namespace splinecast::apps::record {
 
 void Coverage::add(const NumberSpan& range) {
   if (range.count == 0) return;
+  end_ = std::max(end_, range.end());
   if (!ranges_.empty() && ranges_.back().end() == range.first) {
     ranges_.back().count += range.count;
   } else {

@@ -126,8 +126,10 @@ void RecordedStream::take_account(const Account& account) {
 
 void RecordedStream::settle_account() {
   if (account_) {
-    found_.sent += account_->items.end;
-    found_.unaccounted += covered_.missing(first_.value_or(0), account_->items.end);
+    // Items that came after the last account are there, too.
+    const ipc::Word end = std::max(account_->items.end, covered_.end());
+    found_.sent = found_.sent.value_or(0) + end;
+    found_.unaccounted += covered_.missing(first_.value_or(0), end);
   }
   covered_ = {};
   first_.reset();

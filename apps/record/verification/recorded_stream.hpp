@@ -24,10 +24,10 @@ struct StreamVerification {
   std::uint64_t parts = 0;                     ///< parts without a gap
   std::array<LossCounts, kLossCauses> lost{};  ///< what the recorder could not record, by cause
   std::uint64_t items = 0;                     ///< recorded
-  std::uint64_t sent = 0;          ///< number of the ring's items that the file accounts for
-  std::uint64_t unaccounted = 0;   ///< of these, neither in the file nor lost; 0 unless the
-                                   ///< file is damaged or cut off
-  std::uint64_t late_commits = 0;  ///< places where a late commit ends a part
+  std::optional<std::uint64_t> sent{};  ///< number of the ring's items that the file accounts for
+  std::uint64_t unaccounted = 0;        ///< of these, neither in the file nor lost; 0 unless the
+                                        ///< file is damaged or cut off
+  std::uint64_t late_commits = 0;       ///< places where a late commit ends a part
   std::optional<ipc::Difference> first{};  ///< the first difference
 
   /// Segments that could not be solved again, because something before them is not in the file.

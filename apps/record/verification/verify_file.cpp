@@ -154,7 +154,7 @@ nlohmann::ordered_json to_json(const FileVerification& found) {
     json["parts"] = stream.parts;
     json["late_commits"] = stream.late_commits;
     json["items"] = stream.items;
-    json["sent"] = stream.sent;
+    json["sent"] = stream.sent ? nlohmann::ordered_json(*stream.sent) : nullptr;
     json["unaccounted"] = stream.unaccounted;
     json["lost"] = record::to_json(stream.all_lost());
     json["reasons"] = reasons_json(stream.lost);

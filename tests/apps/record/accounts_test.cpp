@@ -73,8 +73,14 @@ TEST(RecordAccounts, ItemsAreRecordedOrLostOrUnwantedAlsoOfStreamsThatHaveEnded)
   EXPECT_EQ(total.all_lost().items, 6U);
   EXPECT_EQ(lost_in_words(total.lost), "6 items lost (disk 1, before attaching 5)");
   ASSERT_EQ(accounts.losses().size(), 1U);
-  // As known when the stream ended.
-  EXPECT_EQ(accounts.losses()[0], "'arm': 5 items lost (before attaching 5)");
+  EXPECT_EQ(accounts.losses()[0], "'arm': 6 items lost (disk 1, before attaching 5)");
+  EXPECT_EQ(accounts.changed({1, 7}, true)->items.end, 10U);
+  EXPECT_EQ(accounts.changed({1, 8}, true)->items.end, 1U);
+  accounts.tidy(Time(1), [](const auto& /*stream*/) { return true; });
+  EXPECT_NE(accounts.changed({1, 7}, true), nullptr);
+  accounts.tidy(Time(1), [](const auto& /*stream*/) { return false; });
+  EXPECT_EQ(accounts.changed({1, 7}, true), nullptr);
+  EXPECT_EQ(accounts.total().items.end, 11U);
 }
 
 TEST(RecordAccounts, TheSegmentsOfASecondBoardFollowThoseOfTheFirst) {
