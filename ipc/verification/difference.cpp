@@ -7,6 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <utility>
+#include <vector>
+
+#include "core/polynomial/segment.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -86,25 +89,19 @@ std::optional<Difference> compare(const SegmentCopy& published, const core::Segm
 
 namespace {
 
-/// The second derivative of a dimension at one end of a segment, and the size of the values from
-/// which it follows by differences, for its rounding.
-struct EndAcceleration {
-  double value = 0;
-  double size = 0;
-};
-
-EndAcceleration acceleration_at(const SegmentCopy& segment, std::size_t d, bool is_right) noexcept {
+/// The size of the values from which the acceleration of a dimension follows by differences: its
+/// rounding is proportional to it.
+double size_of_acceleration(const SegmentCopy& segment, std::size_t d) noexcept {
   const std::size_t dimensions =
       segment.coefficients.size() / static_cast<std::size_t>(segment.order);
   const double seconds = to_seconds(segment.right - segment.left);
-  EndAcceleration at;
+  double size = 0;
   double power = 1 / (seconds * seconds);
   for (int k = 0; k < segment.order; ++k, power *= seconds) {
-    const double c = segment.coefficients[static_cast<std::size_t>(k) * dimensions + d];
-    at.size += k * std::abs(c) * power + std::abs(c) * power;
-    if (k == 2 || (k > 2 && is_right)) at.value += k * (k - 1) * c * power;
+    size += (k + 1) * std::abs(segment.coefficients[static_cast<std::size_t>(k) * dimensions + d]) *
+            power;
   }
-  return at;
+  return size;
 }
 
 }  // namespace
@@ -117,12 +114,16 @@ std::optional<Difference> compare_step(const SegmentCopy& before, const SegmentC
   if (segment.acceleration_step.size() != dimensions) {
     return differ("acceleration step", "none", "one");
   }
+  std::vector<double> end(dimensions);
+  std::vector<double> start(dimensions);
+  core::evaluate_derivative(before.order, before.coefficients,
+                            to_seconds(before.right - before.left), 2, end);
+  core::evaluate_derivative(segment.order, segment.coefficients, 0, 2, start);
   for (std::size_t d = 0; d < dimensions; ++d) {
-    const EndAcceleration end = acceleration_at(before, d, true);
-    const EndAcceleration start = acceleration_at(segment, d, false);
     const double step = segment.acceleration_step[d];
-    const double solved = start.value - end.value;
-    if (std::abs(step - solved) <= kRounding * (start.size + end.size)) continue;
+    const double solved = start[d] - end[d];
+    const double size = size_of_acceleration(before, d) + size_of_acceleration(segment, d);
+    if (std::abs(step - solved) <= kRounding * size) continue;
     return differ("acceleration step", in_words(step), in_words(solved));
   }
   return std::nullopt;

@@ -12,7 +12,7 @@
 #include "apps/record/format/record.hpp"
 #include "ipc/memory/word.hpp"
 
-/// What of a stream is not in a recording, and the account of all that the recorder knows.
+/// Losses of a recording, and accounts of what was recorded and lost.
 namespace splinecast::apps::record {
 
 /// Why something is not in a file.

@@ -12,12 +12,13 @@
 namespace splinecast::apps::record {
 namespace {
 
-/// Counts numbers that have been read. Returns how many of them were counted before.
+/// Counts numbers that have been read. Numbers that were skipped without a loss count as missed.
+/// Returns whether any of them is new.
 bool count(Account::Numbers& numbers, LossCounts& missed, ipc::Word LossCounts::*member,
            const NumberSpan& read) noexcept {
   const NumberSpan rest = read.from(numbers.end);
   if (rest.count == 0) return false;
-  missed.*member += rest.first - numbers.end;  // each loss is in the record: there is none here
+  missed.*member += rest.first - numbers.end;
   numbers.recorded += rest.count;
   numbers.end = rest.end();
   return true;

@@ -36,7 +36,7 @@ class Accounts {
   /// Forgets the streams that have ended, had no record since `oldest` and are not `needed`.
   void tidy(Time oldest, const std::function<bool(const Key& stream)>& needed);
 
-  /// The id of the present stream of a number; 0 if there is none.
+  /// The id of the present stream with this number; 0 if it is unknown.
   [[nodiscard]] ipc::Word present(std::uint32_t stream) const noexcept;
   /// The account of a stream, if it has changed since the last call or `is_needed`.
   [[nodiscard]] const Account* changed(const Key& stream, bool is_needed);

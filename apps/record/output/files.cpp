@@ -28,12 +28,6 @@ constexpr Time kShortest = std::chrono::seconds(1);
 /// The account of a stream that has ended is kept longer than its records, by this time.
 constexpr Time kKeepAccount = std::chrono::seconds(10);
 
-/// Whether a record is the event with which a stream ends.
-bool is_retirement(const Record& record) noexcept {
-  return record.kind == RecordKind::event &&
-         record.number == static_cast<ipc::Word>(EventKind::retired);
-}
-
 }  // namespace
 
 Files::Files(const OutputOptions& options)
@@ -86,7 +80,7 @@ void Files::take(Record record) {
   const Time now = record.seen;
   const bool is_data = record.kind != RecordKind::summary;
   const std::uint32_t stream = record.stream;
-  const bool is_end = is_retirement(record);
+  const bool is_end = is_end_of_stream(record);
   memory_.add(std::move(record), forget());
   if (is_data) data_until_ = memory_.added();
   if (is_end) end_stream(stream, now);

@@ -36,7 +36,7 @@ struct OutputOptions {
 /// What came of a trigger.
 struct TriggerResult {
   bool is_done = false;  ///< whether its file has been begun
-  std::string text{};    ///< the name of the file; else why there is none yet
+  std::string text{};    ///< the name of the file; else why it cannot be written now
 };
 
 /// What a recorder has written.

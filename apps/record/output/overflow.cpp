@@ -19,9 +19,7 @@ void Overflow::take(Batch& batch) {
     lost.erase(found);
   };
   for (Record& record : batch.records) {
-    const bool is_end = record.kind == RecordKind::event &&
-                        record.number == static_cast<ipc::Word>(EventKind::retired);
-    if (record.kind == RecordKind::options || is_end) {
+    if (record.kind == RecordKind::options || is_end_of_stream(record)) {
       note(record.stream);
       put_losses(record.stream);
       ++options_;

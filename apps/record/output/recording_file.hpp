@@ -25,7 +25,7 @@ struct FileOptions {
   double states_hz = 0;  ///< rate of the channel of states; 0: none
 };
 
-/// Which file a path names: its device and inode; nothing if there is none.
+/// Device and inode of the file at a path; empty if no file is there.
 using FileId = std::optional<std::pair<dev_t, ino_t>>;
 [[nodiscard]] FileId file_id(const std::string& path) noexcept;
 

@@ -37,6 +37,12 @@ struct EventNote {
   friend bool operator==(const EventNote&, const EventNote&) = default;
 };
 
+/// Whether a record is the event with which a stream ends.
+[[nodiscard]] inline bool is_end_of_stream(const Record& record) noexcept {
+  return record.kind == RecordKind::event &&
+         record.number == static_cast<ipc::Word>(EventKind::retired);
+}
+
 /// Records on their way from the observer to the file, in the order in which they were read.
 struct Batch {
   std::vector<Record> records{};

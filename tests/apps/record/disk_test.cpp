@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -51,6 +52,33 @@ TEST_F(RecordDisk, AFullFileIsFollowedByAnotherOneAndEachVerifies) {
   EXPECT_FALSE(std::filesystem::exists(folder.path("run-0001.mcap")));
   for (const std::string& path : paths) expect_verified(path, stream.name());
   EXPECT_EQ(nlohmann::json::parse(ended.out)["lost"], 0);
+}
+
+/// Verification cannot begin anywhere in a stream without a solver: its items are not repeated.
+TEST_F(RecordDisk, AStreamWithoutASolverIsNotRepeatedInTheNextFile) {
+  const TestFolder folder;
+  const TestStream stream;
+  Producer producer(stream.name(),
+                    {.dimensions = 2, .clock = StreamClock::recorded, .capacity = 1U << 16U});
+  Process recorder = start_recorder({stream.name(), "-o", folder.path("run.mcap"), "--max-size",
+                                     "1MiB", "--compression", "none"});
+  recorder.await_message("'" + stream.name() + "': recording");
+  std::size_t count = 0;
+  const std::array<double, 2> x{1, 2};
+  while (!std::filesystem::exists(folder.path("run-0003.mcap")) && count < 60'000) {
+    for (int i = 0; i < 50; ++i, ++count) {
+      (void)producer.append({.time = Time(10'000'000) * count, .position = x});
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));  // a rate, not a wait
+  }
+  recorder.signal(SIGINT);
+  EXPECT_EQ(recorder.wait().code, 0);
+  std::size_t recorded = 0;
+  for (const std::string& path : recordings_in(folder.path(""))) {
+    recorded += messages_of(path, "/" + stream.name() + "/waypoints").size();
+    EXPECT_EQ(verify(path).stream(stream.name())["unaccounted"], 0) << path;
+  }
+  EXPECT_EQ(recorded, count);
 }
 
 /// The first part of a dump has what was in memory, and the others do not repeat it.
@@ -118,7 +146,7 @@ TEST_F(RecordDisk, AFullDiskIsReportedAndRecordingContinuesWhenItHasSpace) {
   expect_verified(paths[0], stream.name());
 }
 
-/// The disk is full when the recorder ends: what it has read and cannot write is lost, and counted.
+/// When the disk is full at the end, records that cannot be written are counted as lost.
 TEST_F(RecordDisk, AFullDiskAtTheEndIsALoss) {
   REQUIRE_PRIVATE_SHARED_MEMORY();
   const PrivateSharedMemory disk("3m");

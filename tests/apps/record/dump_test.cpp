@@ -16,6 +16,7 @@
 
 #include "apps/files/text_file.hpp"
 #include "apps/mcap/input/reader.hpp"
+#include "splinecast/streams.hpp"
 #include "tests/apps/record/recorded.hpp"
 
 /// Dumps, triggers and the names of files.
@@ -61,6 +62,35 @@ TEST_F(RecordDump, EachTriggerWritesAFileOfItsOwnThatVerifies) {
   for (const std::string& file : files) expect_verified(folder.path(file), stream.name());
   EXPECT_EQ(verify(folder.path("run.end-0001.mcap")).stream(stream.name())["segments"], 599);
   EXPECT_EQ(run({"record", "--trigger", name}).code, 4);
+}
+
+/// A dump with two streams of the same name has an account of each.
+TEST_F(RecordDump, OfARecreatedStreamAccountsForEachOfTheTwo) {
+  const TestFolder folder;
+  const TestStream stream;
+  Process recorder =
+      start_recorder({stream.name(), "-o", folder.path("run.mcap"), "--last", "3600"});
+  nlohmann::json found;
+  const auto dump_has = [&](std::size_t items) {
+    const Ended triggered = run({"record", "--trigger", std::to_string(recorder.pid())});
+    found = verify(triggered.out.substr(0, triggered.out.find('\n'))).stream(stream.name());
+    return !found.is_null() && found["items"] == items;
+  };
+  std::size_t sent = 0;
+  for (const std::size_t count : {10U, 300U}) {
+    {
+      SteppedStream source(stream.name());
+      source.append_until(count);
+      source.finish();
+      sent += count + 1;
+      EXPECT_TRUE(await([&] { return dump_has(sent); })) << found.dump(1);
+      EXPECT_EQ(found["sent"], sent);
+      EXPECT_EQ(found["unaccounted"], 0);
+    }
+    remove_stream(stream.name());
+  }
+  recorder.signal(SIGINT);
+  EXPECT_EQ(recorder.wait().code, 0);
 }
 
 TEST_F(RecordDump, AnEventOfTheListWritesTheMemory) {
