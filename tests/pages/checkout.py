@@ -70,7 +70,7 @@ def run(path):
             report = Path(folder, "delay")
             started = subprocess.Popen(beside_a_beat(report, shared_memory.in_own(["bash", script])), cwd=blocks.PROJECT,
                                        stdin=subprocess.DEVNULL, stdout=out, stderr=out, start_new_session=True,
-                                       env=os.environ | {"HOME": folder, "PATH": path_of_programs})
+                                       env=os.environ | {"HOME": folder, "XDG_RUNTIME_DIR": folder, "PATH": path_of_programs})
             code = started.wait()
             delay = delay_of(report)
             out.seek(0)

@@ -114,6 +114,7 @@ def run(found, programs):
     """What the script of these commands prints, and the longest delay of a process beside it [s]."""
     with tempfile.TemporaryDirectory() as folder:
         environment = os.environ | {"PATH": os.pathsep.join([programs, "/usr/bin", os.environ["PATH"]]), "HOME": folder,
+                                    "XDG_RUNTIME_DIR": folder,  # sockets of recorders, by their names
                                     "PYTHONPATH": os.path.join(os.path.dirname(programs), "python"),
                                     "SPLINECAST_SOURCE": str(blocks.PROJECT), "TERM": "dumb", "LC_ALL": "C.UTF-8"}
         Path(folder, ".script").write_text(script(found), encoding="utf-8")
