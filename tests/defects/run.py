@@ -2,7 +2,7 @@
 """Removes each correction and checks that its tests then fail. Writes tests/defects/README.md.
 
     run.py [NAME ...]     for all patches, or those named, for example held-zero: applies, builds, runs its tests, reports
-    run.py --page         writes the page from the patches and the results of the last run
+    run.py --page         writes the page from the patches and their last results
     run.py --check        exits with 1 if a patch does not apply, or the page is not up to date
     run.py --keep         for all patches, without writing results and page; those of headers are applied together
     run.py --tree FOLDER  folder for the copy of the sources and its build (build/defects)
@@ -52,8 +52,8 @@ This page lists corrected defects, each with the tests that fail without its cor
 the corrected code or its tests.
 
 Each patch in this folder removes one correction. `./run defects` applies the patches one at a time, builds, and checks
-that the named tests fail. In the last run, the tests of {failed} of {all} patches failed; the run took {minutes} min.
-[`results.json`](results.json) contains the message of each test.
+that the named tests fail; `./run rebuilds` checks this, too. [`results.json`](results.json) contains the message of
+each test in the last run of its patch; the context of the patch may have changed since.
 
 Patches of older corrections are not kept; their tests are.
 
@@ -309,8 +309,6 @@ def run(tree, names, writes_results):
     print(f"{len(tests)} corrections taken out in {(time.monotonic() - begin) / 60:.1f} min")
     if writes_results:
         results["patches"] = dict(sorted(results["patches"].items()))
-        if not names:
-            results["minutes"] = round((time.monotonic() - begin) / 60, 1)
         RESULTS.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
         PAGE.write_text(make_page(), encoding="utf-8")
     sys.exit(f"passed without the correction: {', '.join(passed)}" if passed else 0)
@@ -339,11 +337,8 @@ def section(name, path, fields, results):
 def make_page():
     paths, patches = find_patches(), read_patches()
     results = read_results()
-    failed = sum(all(why != "passes" for why in results["patches"][name].values())
-                 for name in patches if name in results["patches"])
-    lines = [HEAD.format(failed=failed, all=len(patches), minutes=results.get("minutes", "-"))]
-    lines += [section(name, paths[name], fields, results["patches"].get(name, {})) for name, fields in patches.items()]
-    return "".join(lines)
+    sections = [section(name, paths[name], fields, results["patches"].get(name, {})) for name, fields in patches.items()]
+    return HEAD + "".join(sections)
 
 
 def check():
