@@ -62,6 +62,19 @@ TEST(Roots, AtTangenciesAndAtTheEndsAreFound) {
   EXPECT_EQ(found({-1, 1}), std::vector{1.0});
 }
 
+TEST(Roots, ADoubleRootIsFoundBesideASingleOne) {
+  const auto exact = found(with_roots({0.25, 0.25, 0.75}, 1));  // coefficients without rounding
+  ASSERT_EQ(exact.size(), 2U);
+  EXPECT_EQ(exact[0], 0.25);
+  EXPECT_NEAR(exact[1], 0.75, 2e-16);
+  // Rounded coefficients have two roots near the double one, or none.
+  const auto rounded = found(with_roots({0.3, 0.3, 0.7}, 1));
+  ASSERT_FALSE(rounded.empty());
+  EXPECT_LE(rounded.size(), 3U);
+  EXPECT_NEAR(rounded.back(), 0.7, 1e-14);
+  for (std::size_t i = 0; i + 1 < rounded.size(); ++i) EXPECT_NEAR(rounded[i], 0.3, 1e-7);
+}
+
 TEST(Roots, AreFoundIfTheyCoincideAndAtTheHighestDegree) {
   const auto thrice = found(with_roots({0.4, 0.4, 0.4}, 1));
   ASSERT_FALSE(thrice.empty());

@@ -32,6 +32,7 @@ struct Forms {
   RowMajorXd<Eigen::Dynamic, Eigen::Dynamic> rows = wide;
   double dt = 0.01;
   std::array<double, 3> plain{7, 8, 9};
+  std::array<double, 6> pairs{1, 0, 2, 0, 4, 0};
 
   /// Calls `send` with a waypoint in each form, and with the position that it has.
   template <typename Send>
@@ -76,6 +77,9 @@ struct Forms {
     send(as_waypoint(stream.next(), Vector3d::Map(plain.data())), Vector3d(7, 8, 9));
     const Eigen::Ref<const VectorXd> reference(columns.col(2));
     send(as_waypoint(stream.next(), reference), columns.col(2));
+    send(as_waypoint(stream.next(), Eigen::Ref<const VectorXd>(columns.col(3))), columns.col(3));
+    const Eigen::Map<const VectorXd, 0, Eigen::InnerStride<2>> strided(pairs.data(), 3);
+    send(as_waypoint(stream.next(), strided), Vector3d(1, 2, 4));
     send(as_waypoint(stream.next(), plain), Vector3d(7, 8, 9));
     send(Waypoint{.time = stream.next(), .position = columns.col(3)}, columns.col(3));
   }
@@ -102,7 +106,7 @@ TEST(EigenForms, AWaypointIsAppendedInEachFormWithItsValues) {
     ASSERT_TRUE(has_values(reader.sample(static_cast<int>(i + 1) * kPace, state)));
     EXPECT_TRUE(state.position.isApprox(expected[i], 1e-12)) << i;
   }
-  EXPECT_EQ(expected.size(), 24U);
+  EXPECT_EQ(expected.size(), 26U);
 }
 
 TEST(EigenForms, AnExpressionIsCopiedAndAVectorIsViewed) {

@@ -9,9 +9,13 @@ import subprocess
 import sys
 
 VALUES = """Eigen::VectorXd x; Eigen::VectorXf f; Eigen::MatrixXd m; std::span<const Time> times;
-Eigen::Affine3d affine; Eigen::VectorXi whole; Time t; double dt = 0;"""
+Eigen::Affine3d affine; Eigen::VectorXi whole; Time t; double dt = 0;
+Eigen::Map<Eigen::VectorXd, 0, Eigen::InnerStride<2>> strided(x.data(), 3);
+Eigen::Map<const Eigen::Vector3d, 0, Eigen::InnerStride<2>> strided3(x.data());
+using Reference = Eigen::Ref<const Eigen::VectorXd>; using Reference3 = Eigen::Ref<const Eigen::Vector3d>;"""
 
-# The form, and a part of the message.
+# The form, and a part of the message. No two have vectors of the same type in the same place: the compiler reports such
+# an error once.
 FORMS = [
     ("(void)as_waypoint(t, f);", "give vectors of double; for float use .cast<double>()"),
     ("(void)as_waypoint(t, x, 2 * f);", "give vectors of double; for float use .cast<double>()"),
@@ -25,9 +29,13 @@ FORMS = [
     ("(void)as_waypoints(times, m.cast<float>());", "for float store .cast<double>() in a variable"),
     ("(void)as_span(x + x);", "use as_waypoint(t, ...) of splinecast/eigen.hpp, which copies it"),
     ("(void)as_span(m.row(0));", "use as_waypoint(t, ...) of splinecast/eigen.hpp, which copies it"),
+    ("(void)as_span(strided);", "use as_waypoint(t, ...) of splinecast/eigen.hpp, which copies it"),
+    ("(void)as_span(Reference(x));", "use as_waypoint(t, ...) of splinecast/eigen.hpp, which copies it"),
     ("(void)as_span(m);", "give a vector, one column or one row: m.col(i)"),
     ("(void)Waypoint{.time = t, .position = x + x * dt};", "use as_waypoint(t, ...)"),
     ("(void)Waypoint{.time = t, .position = Eigen::VectorXd(x)};", "use as_waypoint(t, ...)"),
+    ("(void)Waypoint{.time = t, .position = strided3};", "use as_waypoint(t, ...)"),
+    ("(void)Waypoint{.time = t, .position = Reference3(x)};", "use as_waypoint(t, ...)"),
     ("(void)Waypoint{.time = t, .position = whole};", "as_waypoint(t, x.cast<double>())"),
 ]
 
