@@ -15,7 +15,7 @@
 
 Each command exits with 1 if a limit is exceeded. The limits: 20 files in a room, 30 in a folder of tests or docs;
 400 lines in a file, with a median of at most 150; 40 lines in a function; 25 data members in a class; 24 installed
-headers; 12 files of core, ipc and apps that name an option.
+headers; 12 files of core, ipc and apps that name an option; 17 stations of a waypoint.
 """
 
 import argparse
@@ -32,6 +32,7 @@ EXPORTS = Path(__file__).resolve().parent / "exports.txt"
 PAGE = PROJECT / "docs" / "house.md"
 MOST_FILES, MOST_FILES_OF_TESTS, MOST_LINES, MEDIAN_LINES, MOST_FUNCTION_LINES, MOST_HEADERS = 20, 30, 400, 150, 40, 24
 MOST_MEMBERS = 25
+MOST_STATIONS = 17
 MOST_FILES_OF_AN_OPTION = 12
 # Their members are the words of a region: see ipc/layout/table.hpp.
 FORMATS = {"ipc/layout/header.hpp: RegionHeader", "ipc/layout/summary.hpp: Summary"}
@@ -236,15 +237,61 @@ def options():
     return [f"{count:5}  {key}" for count, key in counts], broken
 
 
-def walk():
-    """The files that a waypoint passes through, as listed in CONTRIBUTING.md."""
+def stations():
+    """The way of a waypoint in CONTRIBUTING.md: for each process, the stations' files and function."""
     text = (PROJECT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     part = re.search(r"^## The way of a waypoint\n(.*?)(?=^## |\Z)", text, re.M | re.S)
-    listed = re.findall(r"^\d+\. `([^`]+)`", part.group(1), re.M) if part else []
-    broken = [] if len(listed) >= 8 else ["CONTRIBUTING.md does not list the way of a waypoint"]
-    for name in listed:
-        broken += goes_up(name) if (PROJECT / name).is_file() else [f"{name} does not exist"]
-    return listed, broken
+    processes = re.split(r"^In .*:\n", part.group(1), flags=re.M)[1:] if part else []
+    listed = [re.findall(r"^\d+\. (`.*?`):(?:\s+`(?:(\w+)::)?(\w+)`)?", process, re.M) for process in processes]
+    return [[(re.findall(r"`([^`]+)`", names), of, function) for names, of, function in process] for process in listed]
+
+
+def is_defined(of, function, names):
+    """Whether these files define a function: of a class, or of none if `of` is empty. False without a function."""
+    text = "".join((PROJECT / name).read_text(encoding="utf-8") for name in names)
+    in_class = re.search(rf"\bclass {of}\b.*?\b{function}\(", text, re.S)
+    is_there = re.search(rf"\b{of}::{function}\(" if of else rf"\b{function}\(", text) or (of and in_class)
+    return bool(function and is_there)
+
+
+def wrong_stations(process):
+    """What is wrong with the stations in a process: an earlier one calls each, and the way does not go in circles.
+
+    It leads to a lower room that it has not passed, or back to the room of a caller.
+    """
+    broken, passed, before = [], [], ""
+    for names, of, function in process:
+        if not is_defined(of, function, names):
+            broken.append(f"{' and '.join(names)}: no function '{function}'")
+        if before and not re.search(rf"(?:\.|->|::){function}\(", before):
+            broken.append(f"{' and '.join(names)}: no station before it calls {function}")
+        before += "".join((PROJECT / name).read_text(encoding="utf-8") for name in names)
+        for room in map(os.path.dirname, names):
+            at = passed[-1] if passed else room
+            is_down = LAYERS.index(room) < LAYERS.index(at)
+            if is_down and room in passed:
+                broken.append(f"{' and '.join(names)}: the way has already passed {room}")
+            if LAYERS.index(room) > LAYERS.index(at) and room not in passed:
+                broken.append(f"{' and '.join(names)}: no station before it is in {room}")
+            passed.append(room)
+    return broken
+
+
+def walk():
+    """The files that a waypoint passes through, as listed in CONTRIBUTING.md."""
+    processes = stations()
+    listed = [name for process in processes for names, _, _ in process for name in names]
+    count = sum(map(len, processes))
+    out = [f"{count} stations in {len(processes)} processes, {len(listed)} files:"]
+    out += ["  ".join(names) for process in processes for names, _, _ in process]
+    broken = [f"{name} does not exist" for name in listed if not (PROJECT / name).is_file()]
+    broken += [f"{name} is in no room" for name in listed if os.path.dirname(name) not in LAYERS]
+    broken += [f"{name} is listed {times} times" for name, times in Counter(listed).items() if times > 1]
+    broken = broken or [up for name in listed for up in goes_up(name)]
+    broken = broken or [wrong for process in processes for wrong in wrong_stations(process)]
+    if not 8 <= count <= MOST_STATIONS or len(processes) != 3:
+        broken.append(f"{count} stations in {len(processes)} processes, not 8 to {MOST_STATIONS} in 3")
+    return out, broken
 
 
 def symbols(library, write):
