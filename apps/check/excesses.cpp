@@ -49,16 +49,19 @@ void take_segment(const core::SegmentPart& part, Time left, const MotionLimits& 
 
 }  // namespace
 
-CurveCheck check_curve(const PiecewisePolynomial& curve, const MotionLimits& limits,
+CurveCheck check_curve(std::span<const PiecewisePolynomial> parts, const MotionLimits& limits,
                        const DimensionKinds& kinds) {
-  CurveCheck check{.segments = curve.segments()};
-  for (std::size_t i = 0; i < curve.segments(); ++i) {
-    const core::SegmentPart part{.order = curve.order_of(i),
-                                 .coefficients = curve.coefficients(i),
-                                 .dimensions = curve.dimensions(),
-                                 .from = 0,
-                                 .to = curve.seconds(i)};
-    take_segment(part, curve.left_of(i), limits, kinds, check);
+  CurveCheck check;
+  for (const PiecewisePolynomial& curve : parts) {
+    check.segments += curve.segments();
+    for (std::size_t i = 0; i < curve.segments(); ++i) {
+      const core::SegmentPart part{.order = curve.order_of(i),
+                                   .coefficients = curve.coefficients(i),
+                                   .dimensions = curve.dimensions(),
+                                   .from = 0,
+                                   .to = curve.seconds(i)};
+      take_segment(part, curve.left_of(i), limits, kinds, check);
+    }
   }
   return check;
 }

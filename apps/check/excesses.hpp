@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "core/limits/check.hpp"
 #include "splinecast/piecewise_polynomial.hpp"
@@ -29,9 +30,9 @@ struct CurveCheck {
   [[nodiscard]] bool keeps_limits() const noexcept { return segments_beyond == 0; }
 };
 
-/// Compares every segment of a curve with limits that have passed require_limits. Acceleration
-/// steps between segments do not count as jerk.
-[[nodiscard]] CurveCheck check_curve(const PiecewisePolynomial& curve, const MotionLimits& limits,
-                                     const DimensionKinds& kinds);
+/// Compares every segment of the parts of a curve with limits that have passed require_limits.
+/// Acceleration steps between segments do not count as jerk.
+[[nodiscard]] CurveCheck check_curve(std::span<const PiecewisePolynomial> parts,
+                                     const MotionLimits& limits, const DimensionKinds& kinds);
 
 }  // namespace splinecast::apps

@@ -11,6 +11,7 @@
 #include "apps/cli/options.hpp"
 #include "apps/cli/verb.hpp"
 #include "apps/fit/curve.hpp"
+#include "apps/fit/executed.hpp"
 #include "apps/fit/options.hpp"
 #include "apps/limits/file.hpp"
 #include "apps/limits/options.hpp"
@@ -31,6 +32,8 @@ struct CheckOptions {
   const Method* method = nullptr;
   CurveOptions curve;
   LimitOptions limits;
+  bool waypoints = false;    ///< of a recording: fit them
+  bool is_executed = false;  ///< take the executed curve of a recording
   bool json = false;
 };
 
@@ -46,26 +49,55 @@ struct CheckReport {
   std::string file;
   std::vector<std::string> names;
   std::string method;
-  FittedCurve fitted;
+  Time begin{};
+  Time end{};
+  ipc::EndKind rest = ipc::EndKind::none;  ///< how a fitted curve ends at rest
+  Time late{};                             ///< see FittedCurve
   CurveCheck check;
   LimitGaps gaps;
   std::vector<std::string> notes;
 };
 
-/// The given limits for the dimensions of a table.
-MotionLimits limits_of(const LimitOptions& options, const LimitFile& file,
-                       const WaypointTable& table, const std::vector<Dimension>& kinds) {
-  MotionLimits limits = core::overridden(core::matched(file.joints, table.names),
-                                         spread(options.given, table.dimensions()));
+/// The given limits for the dimensions of a file.
+MotionLimits limits_of(const LimitOptions& options, const LimitFile& file, const std::string& of,
+                       const std::vector<std::string>& names, const std::vector<Dimension>& kinds) {
+  MotionLimits limits =
+      core::overridden(core::matched(file.joints, names), spread(options.given, names.size()));
   require_limits(limits, kinds);
   if (limits.empty()) {
-    throw InputError(
-        fmt::format("{}: none of the limits is for one of its dimensions", table.file));
+    throw InputError(fmt::format("{}: none of the limits is for one of its dimensions", of));
   }
   return limits;
 }
 
+/// Checks the executed curve of a recording, against the limits of its stream unless others are
+/// given.
+CheckReport check_executed(const CheckOptions& options) {
+  const Executed executed = read_executed_curve(options.file, options.table);
+  LimitFile file;
+  if (!options.limits.file.empty()) file = read_limit_file(options.limits.file);
+  MotionLimits limits = executed.limits();
+  if (options.limits.any())
+    limits =
+        limits_of(options.limits, file, executed.stream.file, executed.names(), executed.kinds());
+  if (limits.empty()) {
+    throw InputError(
+        fmt::format("{}: stream '{}' has no limits: give them with --limits, "
+                    "--max-velocity, --max-acceleration, --max-jerk or --bounds",
+                    executed.stream.file, executed.stream.curve.options().stream));
+  }
+  return {.file = executed.stream.file,
+          .names = executed.names(),
+          .method = "the executed curve",
+          .begin = executed.parts.front().breaks().front(),
+          .end = executed.parts.back().breaks().back(),
+          .check = check_curve(executed.parts, limits, DimensionKinds(executed.kinds())),
+          .gaps = limit_gaps(limits, file.joints, executed.names(), executed.kinds()),
+          .notes = file.notes};
+}
+
 CheckReport checked(const CheckOptions& options) {
+  if (options.is_executed) return check_executed(options);
   WaypointTable table = read_waypoints(options.file, options.table);
   require_spline_input(table);
   continue_waypoints(table);
@@ -73,7 +105,7 @@ CheckReport checked(const CheckOptions& options) {
   if (!options.limits.file.empty()) file = read_limit_file(options.limits.file);
   std::vector<Dimension> kinds = table.kinds;
   kinds.resize(table.dimensions());
-  const MotionLimits limits = limits_of(options.limits, file, table, kinds);
+  const MotionLimits limits = limits_of(options.limits, file, table.file, table.names, kinds);
   CurveOptions how = options.curve;
   how.rest.limits = limits;
   how.rest.kinds = DimensionKinds(kinds);
@@ -81,8 +113,11 @@ CheckReport checked(const CheckOptions& options) {
   return {.file = table.file,
           .names = table.names,
           .method = std::string(options.method->name),
-          .fitted = fitted,
-          .check = check_curve(fitted.curve, limits, DimensionKinds(kinds)),
+          .begin = fitted.curve.breaks().front(),
+          .end = fitted.curve.breaks().back(),
+          .rest = fitted.end,
+          .late = fitted.late,
+          .check = check_curve({&fitted.curve, 1}, limits, DimensionKinds(kinds)),
           .gaps = limit_gaps(limits, file.joints, table.names, kinds),
           .notes = file.notes};
 }
@@ -100,9 +135,9 @@ ordered_json excess_json(const std::optional<TimedExcess>& found, const CheckRep
 }
 
 /// How the curve ends; null if it ends with a condition.
-ordered_json end_json(const FittedCurve& fitted) {
-  if (fitted.end == ipc::EndKind::none) return nullptr;
-  return {{"kind", to_string(fitted.end)}, {"lateness_ns", fitted.late.count()}};
+ordered_json end_json(const CheckReport& report) {
+  if (report.rest == ipc::EndKind::none) return nullptr;
+  return {{"kind", to_string(report.rest)}, {"lateness_ns", report.late.count()}};
 }
 
 ordered_json to_json(const CheckReport& report) {
@@ -114,10 +149,10 @@ ordered_json to_json(const CheckReport& report) {
   }
   return {{"file", report.file},
           {"method", report.method},
-          {"begin_ns", report.fitted.curve.breaks().front().count()},
-          {"end_ns", report.fitted.curve.breaks().back().count()},
+          {"begin_ns", report.begin.count()},
+          {"end_ns", report.end.count()},
           {"keeps_limits", check.keeps_limits()},
-          {"end", end_json(report.fitted)},
+          {"end", end_json(report)},
           {"segments", check.segments},
           {"segments_beyond", check.segments_beyond},
           {"first_violation", excess_json(check.first_violation, report)},
@@ -153,14 +188,13 @@ std::string to_text(const CheckReport& report) {
   const CurveCheck& check = report.check;
   std::string text =
       fmt::format("{}: {} segments of {} from {:.9f} s to {:.9f} s\n", report.file, check.segments,
-                  report.method, to_seconds(report.fitted.curve.breaks().front()),
-                  to_seconds(report.fitted.curve.breaks().back()));
+                  report.method, to_seconds(report.begin), to_seconds(report.end));
   for (std::size_t kind = 0; kind < check.worst.size(); ++kind) {
     const auto& worst = check.worst[kind];
     text += fmt::format("{:<16}  {}\n", to_string(static_cast<LimitKind>(kind)),
                         worst ? text_of(*worst, report) : "no limit");
   }
-  const std::string end = end_in_words(report.fitted.end, report.fitted.late);
+  const std::string end = end_in_words(report.rest, report.late);
   if (!end.empty()) text += fmt::format("{:<16}  {}\n", "end", end);
   if (check.keeps_limits()) return text + "all limits are kept\n";
   const TimedExcess& first = *check.first_violation;
@@ -194,12 +228,17 @@ void add_check(Command& verb, Action& action) {
             "method's own)");
   add_curve_option<&SolverOptions::stop_time>(verb, options->curve.rest.stop_length, "SECONDS");
   add_table_options(verb, options->table);
+  add_waypoints(verb, options->waypoints);
   verb.flag("--json", options->json, "Print JSON");
-  verb.callback([&action, options] {
+  verb.callback([&action, options, verb] {
+    options->is_executed =
+        uses_executed(verb, options->file, options->waypoints,
+                      {"--limits", "--max-velocity", "--max-acceleration", "--max-jerk", "--bounds",
+                       "--topic", "--quiet", "--json"});
     if (options->method == nullptr) options->method = &c2();
     require_consistent(options->curve, std::array{options->method});
     if (rests_by_default(*options)) options->curve.end = AtRest{};
-    if (!options->limits.any()) {
+    if (!options->limits.any() && !options->is_executed) {
       throw UsageError("check",
                        "needs limits: --limits, --max-velocity, --max-acceleration, "
                        "--max-jerk or --bounds");

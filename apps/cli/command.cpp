@@ -112,6 +112,14 @@ CommandDescription Command::description() const { return describe(*app_); }
 
 bool Command::is_chosen() const { return app_->parsed(); }
 
+std::vector<std::string> Command::given() const {
+  std::vector<std::string> names;
+  for (const CLI::Option* const option : app_->get_options()) {
+    if (!option->empty() && !option->get_positional()) names.push_back(option->get_name());
+  }
+  return names;
+}
+
 void Command::callback(const std::function<void()>& parsed) { app_->callback(parsed); }
 
 }  // namespace splinecast::apps

@@ -74,6 +74,9 @@ class Command {
   [[nodiscard]] CommandDescription description() const;
   /// Whether the command line selects this command. Valid after parsing.
   [[nodiscard]] bool is_chosen() const;
+  /// The options that the command line contains, by their longest names; no positional arguments.
+  /// Valid after parsing.
+  [[nodiscard]] std::vector<std::string> given() const;
 
   /// Sets the function that is called after parsing, if the command line selects this command. The
   /// function may throw UsageError.

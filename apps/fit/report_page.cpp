@@ -118,6 +118,39 @@ ordered_json times_json(std::span<const Time> times, Time origin) {
   return json;
 }
 
+/// The least and the greatest value of each derivative; null where there is no limit.
+ordered_json limits_json(const MotionLimits& limits, std::size_t d) {
+  ordered_json json = ordered_json::array();
+  const auto bound = [&](const std::vector<double>& bounds) {
+    const bool is_there = d < bounds.size() && std::isfinite(bounds[d]);
+    return is_there ? ordered_json(bounds[d]) : ordered_json();
+  };
+  json.push_back({bound(limits.lower), bound(limits.upper)});
+  for (const auto* values : {&limits.velocity, &limits.acceleration, &limits.jerk}) {
+    const double limit = d < values->size() ? (*values)[d] : 0;
+    json.push_back(limit > 0 ? ordered_json{-limit, limit} : ordered_json{nullptr, nullptr});
+  }
+  return json;
+}
+
+ordered_json spans_json(const Measured& all) {
+  ordered_json json = ordered_json::array();
+  for (const ReportSpan& span : all.report->spans) {
+    json.push_back({{"kind", span.kind},
+                    {"from", seconds_from(all.origin, span.from)},
+                    {"to", seconds_from(all.origin, span.to)}});
+  }
+  return json;
+}
+
+ordered_json marks_json(const Measured& all) {
+  ordered_json json = ordered_json::array();
+  for (const ReportMark& mark : all.report->marks) {
+    json.push_back({{"at", seconds_from(all.origin, mark.time)}, {"text", mark.text}});
+  }
+  return json;
+}
+
 ordered_json dimension_json(const Measured& all, std::size_t d) {
   const Report& report = *all.report;
   ordered_json resolutions = ordered_json::array();
@@ -128,8 +161,15 @@ ordered_json dimension_json(const Measured& all, std::size_t d) {
   }
   ordered_json curves = ordered_json::array();
   for (std::size_t c = 0; c < report.curves.size(); ++c) curves.push_back(curve_json(all, c, d));
+  ordered_json missed = ordered_json::array();
+  const std::size_t missed_count = report.missed.times.size();
+  for (std::size_t i = 0; i < missed_count; i += stride(missed_count)) {
+    missed.push_back(report.missed.positions[i * report.names.size() + d]);
+  }
   return {{"name", report.names[d]},
           {"unit", report.units[d]},
+          {"limits", limits_json(report.limits, d)},
+          {"missed", std::move(missed)},
           {"resolution", std::move(resolutions)},
           {"waypoints", std::move(waypoints)},
           {"curves", std::move(curves)}};
@@ -156,6 +196,9 @@ ordered_json report_json(const Measured& all) {
       {"seconds", all.rows.seconds},
       {"waypoint_seconds", times_json(report.waypoints.times, all.origin)},
       {"knot_seconds", times_json(breaks, all.origin)},
+      {"missed_seconds", times_json(report.missed.times, all.origin)},
+      {"spans", spans_json(all)},
+      {"marks", marks_json(all)},
       {"dimensions", std::move(dimensions)}};
 }
 

@@ -10,6 +10,7 @@
 #include "apps/files/numbers.hpp"
 #include "apps/files/unit_of_name.hpp"
 #include "apps/fit/curve.hpp"
+#include "apps/fit/executed.hpp"
 #include "apps/fit/options.hpp"
 #include "apps/fit/pieces.hpp"
 #include "apps/fit/report_page.hpp"
@@ -34,17 +35,27 @@ struct FitOptions {
   std::string output;
   std::string report;
   std::vector<std::string> units;  ///< of positions in the report; the last one repeats
+  bool waypoints = false;          ///< of a recording: fit them
+  bool is_executed = false;        ///< take the executed curve of a recording
 };
 
-void require_inside(const std::vector<Time>& times, const PiecewisePolynomial& curve,
+void require_inside(const std::vector<Time>& times, std::span<const PiecewisePolynomial> parts,
                     const std::string& file) {
-  const Time first = curve.breaks().front();
-  const Time last = curve.breaks().back();
   for (std::size_t i = 0; i < times.size(); ++i) {
-    if (times[i] >= first && times[i] <= last) continue;
-    throw InputError(fmt::format("{}: row {}: time {} ns is outside the data, {} ns to {} ns", file,
-                                 i + 1, times[i].count(), first.count(), last.count()));
+    if (std::ranges::any_of(parts, [&](const auto& part) { return covers(part, times[i]); }))
+      continue;
+    throw InputError(fmt::format("{}: row {}: time {} ns is outside the data, {} ns to {} ns{}",
+                                 file, i + 1, times[i].count(),
+                                 parts.front().breaks().front().count(),
+                                 parts.back().breaks().back().count(),
+                                 parts.size() > 1 ? ", or where segments are missing" : ""));
   }
+}
+
+void write_report_file(const Report& report, const std::string& file) {
+  Output output(file);
+  write_report(report, output);
+  output.close();
 }
 
 void write_report_of(const WaypointTable& table, std::vector<ReportCurve> curves,
@@ -61,15 +72,16 @@ void write_report_of(const WaypointTable& table, std::vector<ReportCurve> curves
     report.names.push_back(std::move(name));
     report.units.push_back(std::move(unit));
   }
-  Output output(options.report);
-  write_report(report, output);
-  output.close();
+  write_report_file(report, options.report);
 }
 
 /// Throws InputError if --dt makes more than 1e9 samples.
-void require_samples(const PiecewisePolynomial& curve, Time dt) {
+void require_samples(std::span<const PiecewisePolynomial> parts, Time dt) {
   constexpr std::int64_t kMost = 1'000'000'000;
-  const std::int64_t samples = (curve.breaks().back() - curve.breaks().front()) / dt;
+  std::int64_t samples = 0;
+  for (const PiecewisePolynomial& part : parts) {
+    samples += (part.breaks().back() - part.breaks().front()) / dt;
+  }
   if (samples <= kMost) return;
   throw InputError(
       fmt::format("--dt {} makes {} samples; the maximum is {}", to_seconds(dt), samples, kMost));
@@ -89,8 +101,46 @@ std::vector<std::string> outputs_of(const FitOptions& options) {
   return outputs;
 }
 
+std::vector<Time> times_of(const FitOptions& options) {
+  return options.at.empty() ? std::vector<Time>{}
+                            : read_times(options.at, {.time_unit = options.table.time_unit});
+}
+
+/// The only part of an executed curve, for an output that has one curve.
+const PiecewisePolynomial& only_part(const Executed& executed) {
+  if (executed.parts.size() == 1) return executed.parts.front();
+  throw InputError(
+      fmt::format("{}: the curve has {} parts, because segments are missing between them; this "
+                  "output has one curve: --dt and --report take them all",
+                  executed.stream.file, executed.parts.size()));
+}
+
+int run_executed(const FitOptions& options) {
+  const Executed executed = read_executed_curve(options.file, options.table);
+  const auto at = times_of(options);
+  require_inside(at, executed.parts, options.at);
+  if (options.dt) require_samples(executed.parts, *options.dt);
+  if (!options.report.empty()) {
+    Report report = report_of(executed, options.file);
+    for (std::size_t d = 0; d < report.units.size() && !options.units.empty(); ++d) {
+      report.units[d] = options.units[std::min(d, options.units.size() - 1)];
+    }
+    write_report_file(report, options.report);
+  }
+  if (only_reports(options)) return kOk;
+  Output output(options.output);
+  if (options.emit == Emit::samples) {
+    emit_samples(executed.parts, DimensionKinds(executed.kinds()), at, options.dt, output);
+  } else {
+    emit_json(only_part(executed), executed.columns(), options.emit, output);
+  }
+  output.close();
+  return kOk;
+}
+
 int run_fit(const FitOptions& options) {
   require_separate(outputs_of(options), std::array{options.file, options.at});
+  if (options.is_executed) return run_executed(options);
   WaypointTable table = read_waypoints(options.file, options.table);
   require_spline_input(table);
   continue_waypoints(table);
@@ -105,16 +155,14 @@ int run_fit(const FitOptions& options) {
                       .curve = fit_table(table, *method, options.curve).curve});
   }
   const PiecewisePolynomial curve = curves.front().curve;
-  const auto at = options.at.empty()
-                      ? std::vector<Time>{}
-                      : read_times(options.at, {.time_unit = options.table.time_unit});
-  require_inside(at, curve, options.at);
-  if (options.dt) require_samples(curve, *options.dt);
+  const auto at = times_of(options);
+  require_inside(at, {&curve, 1}, options.at);
+  if (options.dt) require_samples({&curve, 1}, *options.dt);
   if (!options.report.empty()) write_report_of(table, std::move(curves), options);
   if (only_reports(options)) return kOk;
   Output output(options.output);
   if (options.emit == Emit::samples) {
-    emit_samples(curve, DimensionKinds(table.kinds), at, options.dt, output);
+    emit_samples({&curve, 1}, DimensionKinds(table.kinds), at, options.dt, output);
   } else {
     emit_json(curve, table.names, options.emit, output);
   }
@@ -194,7 +242,11 @@ void add_fit(Command& verb, Action& action) {
       .separated_by_commas()
       .type("UNIT");
   add_table_options(verb, options->table);
-  verb.callback([&action, options] {
+  add_waypoints(verb, options->waypoints);
+  verb.callback([&action, options, verb] {
+    options->is_executed = uses_executed(verb, options->file, options->waypoints,
+                                         {"--at", "--dt", "--emit", "--output", "--report",
+                                          "--unit", "--topic", "--quiet", "--time-unit"});
     if (options->methods.empty()) options->methods.push_back(&c2());
     if (!options->curve.online) take_former_rest(options->curve.end);
     require_consistent(*options);

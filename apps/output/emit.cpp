@@ -1,5 +1,6 @@
 #include "apps/output/emit.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
@@ -86,20 +87,25 @@ std::optional<Emit> parse_emit(std::string_view text) noexcept {
   return std::nullopt;
 }
 
-void emit_samples(const PiecewisePolynomial& curve, const DimensionKinds& kinds,
+void emit_samples(std::span<const PiecewisePolynomial> parts, const DimensionKinds& kinds,
                   const std::vector<Time>& at, std::optional<Time> dt, Output& output) {
-  SampleWriter writer(output, curve.dimensions(), kinds, false);
-  State state(curve.dimensions());
-  const auto write = [&](Time t) {
-    curve.evaluate(t, state.ref());
+  SampleWriter writer(output, parts.front().dimensions(), kinds);
+  State state(parts.front().dimensions());
+  const auto write = [&](const PiecewisePolynomial& part, Time t) {
+    part.evaluate(t, state.ref());
     kinds.normalise(state.ref());
     writer.write(t, state);
   };
-  for (const Time t : at) write(t);
+  for (const Time t : at) {
+    const auto has = [t](const auto& part) { return covers(part, t); };
+    write(*std::ranges::find_if(parts, has), t);
+  }
   if (!dt) return;
-  const Time last = curve.breaks().back();
-  Time t = curve.breaks().front();
-  for (write(t); last - t >= *dt; write(t)) t += *dt;
+  for (const PiecewisePolynomial& part : parts) {
+    const Time last = part.breaks().back();
+    Time t = part.breaks().front();
+    for (write(part, t); last - t >= *dt; write(part, t)) t += *dt;
+  }
 }
 
 void emit_json(const PiecewisePolynomial& curve, const std::vector<std::string>& columns, Emit what,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,9 +23,15 @@ enum class Emit {
 /// Reads `samples`, `pp`, `bezier` or `bspline`. Returns nothing for any other text.
 [[nodiscard]] std::optional<Emit> parse_emit(std::string_view text) noexcept;
 
-/// Writes samples at the times `at`, then, if `dt` is set, every `dt` from the first to the last
-/// break. Normalises them for these kinds, as a reader does.
-void emit_samples(const PiecewisePolynomial& curve, const DimensionKinds& kinds,
+/// Whether a time is between the first and the last break of a curve.
+[[nodiscard]] inline bool covers(const PiecewisePolynomial& curve, Time t) noexcept {
+  return t >= curve.breaks().front() && t <= curve.breaks().back();
+}
+
+/// Writes samples at the times `at`, each of which is in one of the parts of a curve, then, if `dt`
+/// is set, every `dt` from the first to the last break of each part. Normalises them for these
+/// kinds, as a reader does. At least one part.
+void emit_samples(std::span<const PiecewisePolynomial> parts, const DimensionKinds& kinds,
                   const std::vector<Time>& at, std::optional<Time> dt, Output& output);
 
 /// Writes a line of JSON, with all segments raised to the highest order. The curve of a single

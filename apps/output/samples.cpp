@@ -6,7 +6,7 @@
 namespace splinecast::apps {
 
 SampleWriter::SampleWriter(Output& output, std::size_t dimensions, DimensionKinds kinds,
-                           bool with_status)
+                           std::string_view further)
     : output_(&output), kinds_(std::move(kinds)), motions_(kinds_.quaternions().size()) {
   auto to = std::back_inserter(line_);
   fmt::format_to(to, "t_ns");
@@ -16,11 +16,11 @@ SampleWriter::SampleWriter(Output& output, std::size_t dimensions, DimensionKind
   for (const char* const word : {"omega", "alpha"}) {
     for (std::size_t i = 0; i < 3 * motions_.size(); ++i) fmt::format_to(to, ",{}[{}]", word, i);
   }
-  fmt::format_to(to, "{}\n", with_status ? ",status" : "");
+  fmt::format_to(to, "{}{}\n", further.empty() ? "" : ",", further);
   output_->write({line_.data(), line_.size()});
 }
 
-void SampleWriter::write(Time time, const State& state, std::string_view status) {
+void SampleWriter::write(Time time, const State& state, std::string_view further) {
   line_.clear();
   auto to = std::back_inserter(line_);
   fmt::format_to(to, "{}", time.count());
@@ -34,7 +34,7 @@ void SampleWriter::write(Time time, const State& state, std::string_view status)
       for (const double value : motion.*part) fmt::format_to(to, ",{}", value);
     }
   }
-  if (!status.empty()) fmt::format_to(to, ",{}", status);
+  if (!further.empty()) fmt::format_to(to, ",{}", further);
   line_.push_back('\n');
   output_->write({line_.data(), line_.size()});
 }

@@ -17,11 +17,13 @@ namespace splinecast::apps {
 /// of each per quaternion. Numbers have the shortest form that reads back exactly.
 class SampleWriter {
  public:
-  /// Writes the header. `with_status` adds a last column `status`.
-  SampleWriter(Output& output, std::size_t dimensions, DimensionKinds kinds, bool with_status);
+  /// Writes the header. `further` has the names of columns at the end, separated by commas.
+  SampleWriter(Output& output, std::size_t dimensions, DimensionKinds kinds,
+               std::string_view further = {});
 
-  /// Writes a row. `state` is normalised, as from a reader. An empty `status` writes no status.
-  void write(Time time, const State& state, std::string_view status = {});
+  /// Writes a row. `state` is normalised, as from a reader. `further` has the cells of the further
+  /// columns, separated by commas.
+  void write(Time time, const State& state, std::string_view further = {});
 
  private:
   Output* output_;

@@ -124,6 +124,19 @@ function make_legend(chart, parent) {
       ? `<circle cx="15" cy="5" r="3" fill="#fff" stroke="#000"/>`
       : `<line x1="15" x2="15" y1="0" y2="10" stroke="#aaa"/>`;
   element(swatch(legend, mark), "span", chart.r === 0 ? "waypoint" : "knot", "name");
+  const further = (content, name) => element(swatch(legend, content), "span", name, "name");
+  for (const kind of new Set(report.spans.map((span) => span.kind))) {
+    further(`<rect x="5" width="20" height="10" fill="${kSpanColors[kind]}"/>`, kind);
+  }
+  if (chart.r === 0 && report.missed_seconds.length > 0) {
+    further(`<path d="M12 2L18 8M12 8L18 2" stroke="#c00000"/>`, "waypoint not met");
+  }
+  if (report.marks.length > 0) {
+    further(`<line x1="15" x2="15" y1="0" y2="10" stroke="#7b3294" stroke-dasharray="6 3"/>`, "event");
+  }
+  if (chart.dimension.limits[chart.r].some((value) => value !== null)) {
+    further(`<line x1="0" x2="30" y1="5" y2="5" stroke="#c00000" stroke-dasharray="2 3"/>`, "limit");
+  }
   chart.time = element(legend, "span", "", "time");
 }
 

@@ -27,13 +27,33 @@ function make_summary() {
     element(pair, "dt", name);
     element(pair, "dd", text);
   };
-  item("Waypoints", String(report.count));
+  const missed = report.missed_seconds.length;
+  item("Waypoints", String(report.count) + (missed > 0 ? `, and ${missed} not met` : ""));
   item("Duration", `${short(report.duration)} s`);
   if (report.intervals) {
     item("Intervals: least, median, greatest", report.intervals.map(short).join(", ") + " s");
   }
   item("Time 0", `${report.origin_ns} ns`);
   item("Curves", report.curves.join(", "));
+}
+
+// The events in order of time; a click shows the half second around one in all charts.
+function make_events(sections) {
+  if (report.marks.length === 0) return;
+  const node = document.getElementById("events");
+  element(node, "h2", "Events");
+  const body = element(element(element(node, "div", undefined, "scroll"), "table"), "tbody");
+  for (const {at, text} of report.marks) {
+    const row = element(body, "tr");
+    element(row, "td", `${at.toFixed(6)} s`);
+    element(row, "td", text);
+    row.addEventListener("click", () => {
+      for (const section of sections) {
+        if (section.drawn) zoom(section, [at - kAround, at + kAround]);
+        else section.times = [at - kAround, at + kAround];
+      }
+    });
+  }
 }
 
 function make_contents() {
@@ -96,6 +116,7 @@ function finish_print(sections) {
 make_summary();
 make_contents();
 const sections = report.dimensions.map(make_section);
+make_events(sections);
 make_notes();
 if (address.get("draw") === "all") sections.forEach(draw);
 else watch(sections);

@@ -16,6 +16,12 @@ const kTimePadding = 0.01;  // of the duration, before and after
 const kCoarse = 4;          // px per interval from which the page reports its coarse resolution
 const kSharpSections = 16;  // most sections printed at double resolution; more need too much memory
 
+const kAround = 0.25;       // s before and after an event that is chosen
+
+const kSpanColors = {
+  entry: "#dcebf7", stop: "#fbdcd2", hold: "#e3e3e3", slowed: "#f7eccb", missing: "#bdbdbd",
+};
+
 // `#draw=all` draws every chart at once; `&time=FROM,TO` zooms them, in seconds.
 const address = new URLSearchParams(location.hash.slice(1));
 
@@ -62,6 +68,9 @@ function extent(dimension, r, [from, to]) {
   if (r > 0) return [low, high];
   report.waypoint_seconds.forEach((t, i) => {
     if (t >= from && t <= to) consider(dimension.waypoints[i]);
+  });
+  report.missed_seconds.forEach((t, i) => {
+    if (t >= from && t <= to) consider(dimension.missed[i]);
   });
   return [low, high];
 }

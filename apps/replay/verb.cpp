@@ -13,6 +13,7 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
+#include "apps/record/executed/exact_messages.hpp"
 #include "apps/record/verification/verify_file.hpp"
 #include "apps/streams/log.hpp"
 #include "apps/streams/report.hpp"

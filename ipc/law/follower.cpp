@@ -67,9 +67,10 @@ std::unique_ptr<LawFollower> law_of(const RegionHeader& stream, const Trust& tru
 
 SampleStatus LawFollower::convert(SampleStatus status, LawPoint& out) const noexcept {
   if (!has_values(status)) return status;
-  out = point_of(state_.position()[0], {.rate = state_.velocity()[0],
-                                        .slope = state_.acceleration()[0],
-                                        .curvature = state_.jerk()[0]});
+  out = point_of(board_.header, state_.position()[0],
+                 {.rate = state_.velocity()[0],
+                  .slope = state_.acceleration()[0],
+                  .curvature = state_.jerk()[0]});
   return status;
 }
 

@@ -50,6 +50,14 @@ struct LawPoint {
           .fraction = within(0, fraction, kNanosecond)};
 }
 
+/// The point at which a law's curve has these values. Rounding may exceed the bounds that the ramps
+/// respect.
+[[nodiscard]] inline LawPoint point_of(const RegionHeader& law, double seconds,
+                                       core::LawRates rates) noexcept {
+  rates.rate = within(0, rates.rate, max_rate(law));
+  return point_at(seconds, Time(law.law_origin), rates);
+}
+
 /// The state of a law's curve at a host time, from a sampler of its board; nothing if it cannot be
 /// read. `scratch` has one dimension.
 [[nodiscard]] std::optional<core::LawState> law_state_at(Sampler& sampler, Time host,
@@ -79,7 +87,7 @@ class LawFollower {
     const bool is_in_current = sampler_.find_current(host, is_executed, place);
     if (!is_in_current || place.order != kMaxOrder) return sample(host, is_executed, out);
     const auto [s, rate, slope, curvature] = core::evaluate_one(place.coefficients.data(), place.u);
-    out = point_of(s, {.rate = rate, .slope = slope, .curvature = curvature});
+    out = point_of(board_.header, s, {.rate = rate, .slope = slope, .curvature = curvature});
     return place.status;
   }
   /// The same for a time ahead: see Sampler::preview.
@@ -122,11 +130,6 @@ class LawFollower {
  private:
   LawFollower(BoardView law, std::string name);
   [[nodiscard]] SampleStatus sample(Time host, bool is_executed, LawPoint& out) noexcept;
-  /// Rounding may exceed the bounds that the ramps respect.
-  [[nodiscard]] LawPoint point_of(double seconds, core::LawRates rates) const noexcept {
-    rates.rate = within(0, rates.rate, max_rate());
-    return point_at(seconds, Time(board_.header.law_origin), rates);
-  }
   [[nodiscard]] SampleStatus convert(SampleStatus status, LawPoint& out) const noexcept;
 
   std::string name_;

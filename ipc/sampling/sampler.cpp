@@ -7,19 +7,9 @@
 #include "ipc/sampling/comparison.hpp"
 #include "ipc/sampling/lookup.hpp"
 #include "ipc/sampling/seconds.hpp"
+#include "ipc/sampling/segment_values.hpp"
 
 namespace splinecast::ipc {
-namespace {
-
-/// Sets velocity, acceleration and jerk to 0: at rest.
-void come_to_rest(const StateRef& out) noexcept {
-  std::ranges::fill(out.velocity, 0.0);
-  std::ranges::fill(out.acceleration, 0.0);
-  std::ranges::fill(out.jerk, 0.0);
-}
-
-}  // namespace
-
 Sampler::Sampler(const KnotBoardReader& board, StreamClock clock, DimensionKinds kinds)
     : board_(&board),
       clock_(clock),
@@ -192,22 +182,24 @@ bool Sampler::spans(const BoardSegment& segment, Time t) const noexcept {
   return t >= segment.left() && (t < segment.right() || segment.is_last(summary_));
 }
 
-/// Evaluates a segment u seconds after its left end, and applies DimensionKinds::normalise.
-void Sampler::read(const BoardSegment& segment, double u, const StateRef& out) const noexcept {
-  core::evaluate(segment.order(), segment.coefficients(), u, out);
-  if (!all_linear_) kinds_.normalise(out);
+namespace {
+
+SegmentView view_of(const BoardSegment& segment) noexcept {
+  return {.left = segment.left(),
+          .right = segment.right(),
+          .order = segment.order(),
+          .kind = segment.kind(),
+          .coefficients = segment.coefficients()};
 }
+
+}  // namespace
 
 SampleStatus Sampler::evaluate(const BoardSegment& segment, Time t,
                                const StateRef& out) const noexcept {
-  const Time right = segment.right();
-  const bool past_end = t > right || segment.kind() == SegmentKind::hold ||
-                        (t == right && segment.kind() == SegmentKind::stop);
-  const Time at = past_end ? right : t;
-  read(segment, seconds_after(segment.left(), at) + (past_end ? 0.0 : fraction_), out);
-  if (past_end) come_to_rest(out);
-  if (summary_.finished && t <= right) return SampleStatus::settled;
-  if (past_end) return SampleStatus::holding;
+  const SegmentView view = view_of(segment);
+  values_at(view, kinds_, t, fraction_, out);
+  if (summary_.finished && t <= view.right) return SampleStatus::settled;
+  if (rests_at(view, t)) return SampleStatus::holding;
   if (segment.kind() == SegmentKind::stop) return SampleStatus::stopping;
   return t < summary_.settled_until ? SampleStatus::settled : SampleStatus::provisional;
 }
@@ -215,13 +207,7 @@ SampleStatus Sampler::evaluate(const BoardSegment& segment, Time t,
 /// Before the first waypoint of a live stream the machine is held at its start position, unless it
 /// starts in motion.
 SampleStatus Sampler::hold_first(const StateRef& out) noexcept {
-  const std::size_t dimensions = board_->dimensions();
-  const auto velocity = kept_.current().coefficients().subspan(dimensions, dimensions);
-  if (std::ranges::any_of(velocity, [](double v) { return v != 0; })) return SampleStatus::no_data;
-  // Copies instead of evaluating: coefficients that may still change would affect the sign of a 0.
-  std::ranges::copy(kept_.current().coefficients().first(dimensions), out.position.begin());
-  come_to_rest(out);
-  if (!all_linear_) kinds_.normalise(out);
+  if (!values_before(view_of(kept_.current()), kinds_, out)) return SampleStatus::no_data;
   return SampleStatus::holding;
 }
 
@@ -234,7 +220,7 @@ SampleStatus Sampler::from_own_copy(Time t, const StateRef& out) noexcept {
       t >= kept_.settled_until()) {
     return SampleStatus::busy;
   }
-  read(own, seconds_after(own.left(), t) + fraction_, out);
+  values_at(view_of(own), kinds_, t, fraction_, out);
   return SampleStatus::settled;
 }
 

@@ -140,7 +140,6 @@ class Sampler {
   [[nodiscard]] bool continues(Time t) noexcept;
   [[nodiscard]] Found locate(Time t) noexcept;
   [[nodiscard]] bool spans(const BoardSegment& segment, Time t) const noexcept;
-  void read(const BoardSegment& segment, double u, const StateRef& out) const noexcept;
   [[nodiscard]] SampleStatus evaluate(const BoardSegment& segment, Time t,
                                       const StateRef& out) const noexcept;
   [[nodiscard]] SampleStatus execute(Time t, const StateRef& out) noexcept;

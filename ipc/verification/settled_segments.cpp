@@ -33,20 +33,29 @@ void SettledSegments::look(Time final_until) {
 bool SettledSegments::take(const Look& look, Time final_until) {
   if (!board_->copy_summary(look, summary_)) return false;
   waits_ = false;
+  is_open_ = false;
   if (summary_.newest == 0) return true;
   Word number = std::max(next_, summary_.first);
   while (number <= summary_.newest) {
     const BoardSegment::Taken taken = copy_.take(*board_, summary_, number);
     if (taken == BoardSegment::Taken::torn) return false;
     if (taken == BoardSegment::Taken::none) break;  // the end of a finished curve
-    if (!summary_.finished && copy_.right() > summary_.settled_until) break;
-    waits_ = !summary_.finished && copy_.right() > final_until;
-    if (waits_) break;
+    until_ = std::min(summary_.settled_until, final_until);
+    is_open_ = !summary_.finished && copy_.right() > until_;
+    waits_ = is_open_ && copy_.right() <= summary_.settled_until;
+    if (is_open_) break;
     keep();
     if (copy_.is_last(summary_)) break;
     number = copy_.next();
   }
   return true;
+}
+
+std::optional<OpenSegment> SettledSegments::open() const {
+  if (!is_open_ || copy_.left() >= until_) return std::nullopt;
+  OpenSegment open{.until = until_, .segment = {}};
+  copy_.copy_to(open.segment);
+  return open;
 }
 
 /// Keeps the segment that has been copied, with its acceleration step if the one before is known.

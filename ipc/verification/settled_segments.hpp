@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,12 @@
 #include "ipc/layout/summary.hpp"
 
 namespace splinecast::ipc {
+
+/// A segment that has settled up to a time before its end; a revision may still cut it after that.
+struct OpenSegment {
+  Time until{};
+  SegmentCopy segment;
+};
 
 /// Collects the settled segments of a stream while it runs. Only reads its board.
 ///
@@ -41,6 +48,10 @@ class SettledSegments {
   /// Whether the last look left settled segments because of `final_until`.
   [[nodiscard]] bool waits() const noexcept { return waits_; }
 
+  /// The part that has settled of the next segment, which has not settled to its end; nothing if
+  /// there is none. Without the acceleration step. Allocates.
+  [[nodiscard]] std::optional<OpenSegment> open() const;
+
   /// The summary of the board at the last look.
   [[nodiscard]] const Summary& summary() const noexcept { return summary_; }
 
@@ -59,6 +70,8 @@ class SettledSegments {
   std::vector<SegmentCopy> segments_;
   Word next_ = 1;
   bool waits_ = false;
+  bool is_open_ = false;  ///< copy_ is the next segment, which has not settled to its end
+  Time until_{};          ///< then the time up to which it has
 };
 
 }  // namespace splinecast::ipc

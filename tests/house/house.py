@@ -43,8 +43,8 @@ ROOMS = {
     "ipc": "memory layout mapping requests ring board runs solve options sampling law owned roles sweep verification/promises verification arguments c "
            "python/values python",
     "apps": "process files mcap/format mcap/output mcap/input messages output pages timing tables tables/topics "
-            "tables/ulog cli recover contents recordings limits streams rate stop record/format record/watch record/output "
-            "record/verification record/trigger record advise fit check replay trials demo machine latency soak completion",
+            "tables/ulog cli recover contents recordings limits streams rate stop record/format record/executed record/watch record/output "
+            "record/verification record/trigger record sample advise fit check replay trials demo machine latency soak completion",
 }
 # The installed C header, which may be included as an installed header of C++ is.
 C_HEADER = "splinecast.h"

@@ -39,16 +39,6 @@ bool has_position(const ipc::RingItem& item) noexcept {
                                                  item.condition == ConditionKind::acceleration));
 }
 
-/// The members of a summary, in the order of the message.
-constexpr std::array kSummaryWords{
-    &ipc::Summary::revision,     &ipc::Summary::first,     &ipc::Summary::newest,
-    &ipc::Summary::run_item,     &ipc::Summary::run_knots, &ipc::Summary::run_frozen,
-    &ipc::Summary::consumed,     &ipc::Summary::knots,     &ipc::Summary::passed_over,
-    &ipc::Summary::withdrawn,    &ipc::Summary::controls,  &ipc::Summary::refused,
-    &ipc::Summary::exceeding,    &ipc::Summary::underruns, &ipc::Summary::deadline_misses,
-    &ipc::Summary::late_commits,
-};
-
 }  // namespace
 
 RecordKind kind_of(std::span<const std::byte> message) {
@@ -141,32 +131,6 @@ ipc::RefusalRecord decode_refusal(std::span<const std::byte> bytes) {
                            static_cast<Refusal>(kRefusals - 1), "reason");
   in.require_end();
   return refused;
-}
-
-Bytes encode(const ipc::Summary& summary) {
-  Bytes bytes = begin(RecordKind::summary, 17 + (kSummaryWords.size() + 3) * sizeof(ipc::Word));
-  ByteWriter out(bytes);
-  out.put(static_cast<std::uint8_t>(summary.finished ? 1 : 0))
-      .put(summary.settled_until)
-      .put(summary.newest_time);
-  for (const auto member : kSummaryWords) out.put(summary.*member);
-  out.put(summary.end_kind).put(summary.end_item).put(summary.end_lateness);
-  return bytes;
-}
-
-ipc::Summary decode_summary(std::span<const std::byte> bytes) {
-  ByteReader in(bytes);
-  ipc::Summary summary;
-  summary.finished = in.take<std::uint8_t>() != 0;
-  summary.settled_until = in.take_time();
-  summary.newest_time = in.take_time();
-  for (const auto member : kSummaryWords) summary.*member = in.take<ipc::Word>();
-  if (in.rest().empty()) return summary;  // of an earlier version
-  summary.end_kind = in.take<ipc::Word>();
-  summary.end_item = in.take<ipc::Word>();
-  summary.end_lateness = in.take_time();
-  in.require_end();
-  return summary;
 }
 
 }  // namespace splinecast::apps::record

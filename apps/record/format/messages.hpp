@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "apps/record/format/bytes.hpp"
@@ -13,6 +14,7 @@
 #include "ipc/layout/summary.hpp"
 #include "ipc/ring/item.hpp"
 #include "ipc/verification/run_restart.hpp"
+#include "ipc/verification/settled_segments.hpp"
 
 /// The messages of the exact channel, byte by byte as docs/file-formats.md describes them. The
 /// functions `decode_…` take a message without its first byte, and throw BadMessage for one that is
@@ -41,6 +43,9 @@ struct NumberedItem {
 [[nodiscard]] ipc::SegmentCopy decode_segment(std::span<const std::byte> bytes,
                                               std::size_t dimensions);
 
+/// `spline`, `entry`, `stop`, `hold` or `slowed`.
+[[nodiscard]] std::string_view to_string(SegmentKind kind) noexcept;
+
 /// A place from which the rest of a record can be verified.
 struct Restart {
   ipc::SegmentCopy before{};               ///< the segment before the first one that is verified
@@ -50,8 +55,12 @@ struct Restart {
 [[nodiscard]] Bytes encode(const Restart& restart);
 [[nodiscard]] Restart decode_restart(std::span<const std::byte> bytes, std::size_t dimensions);
 
-[[nodiscard]] Bytes encode(const ipc::Summary& summary);
-/// The members that encode() writes; the others have their defaults.
-[[nodiscard]] ipc::Summary decode_summary(std::span<const std::byte> bytes);
+/// What a stream has published: its summary, and the segment that has not settled to its end.
+struct Published {
+  ipc::Summary summary{};  ///< the members that encode() writes; the others have their defaults
+  std::optional<ipc::OpenSegment> open{};
+};
+[[nodiscard]] Bytes encode(const Published& published);
+[[nodiscard]] Published decode_published(std::span<const std::byte> bytes, std::size_t dimensions);
 
 }  // namespace splinecast::apps::record

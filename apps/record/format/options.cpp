@@ -149,6 +149,23 @@ typename Row::Value take_value(const Row& row, const Fields& fields) {
   }
 }
 
+/// What the stream is to time laws: it follows one, or it is one.
+void parse_law(const Fields& fields, RegionHeader& header) {
+  if (header.clock == static_cast<std::uint64_t>(StreamClock::law)) {
+    const Fields law(fields.at("law"));
+    const auto name = law.take<std::string>("name");
+    if (name.size() >= header.law.size()) throw law.bad("name");
+    std::ranges::copy(name, header.law.begin());
+    header.law_id = law.take<std::uint64_t>("id");
+    header.largest_rate = law.has("largest_rate") ? law.take<double>("largest_rate") : 1;
+  }
+  if (!fields.has("time_law")) return;
+  const Fields law(fields.at("time_law"));
+  header.is_law = 1;
+  header.law_origin = law.take<std::int64_t>("origin_ns");
+  header.largest_rate = law.take<double>("largest_rate");
+}
+
 RegionHeader parse_common(const Fields& fields, bool has_curve) {
   RegionHeader header;
   header.magic = ipc::kMagic;
@@ -165,14 +182,7 @@ RegionHeader parse_common(const Fields& fields, bool has_curve) {
   const auto* const known = std::ranges::find(kClocks, clock);
   if (known == kClocks.end()) throw fields.bad("clock");
   header.clock = static_cast<std::uint64_t>(known - kClocks.begin());
-  if (header.clock == static_cast<std::uint64_t>(StreamClock::law)) {
-    const Fields law(fields.at("law"));
-    const auto name = law.take<std::string>("name");
-    if (name.size() >= header.law.size()) throw law.bad("name");
-    std::ranges::copy(name, header.law.begin());
-    header.law_id = law.take<std::uint64_t>("id");
-    header.largest_rate = law.has("largest_rate") ? law.take<double>("largest_rate") : 1;
-  }
+  parse_law(fields, header);
   const auto start = fields.take<std::string>("start");
   const auto condition = start == to_string(Condition{.kind = ConditionKind::own, .value = {}})
                              ? Condition{.kind = ConditionKind::own, .value = {}}
@@ -223,7 +233,7 @@ StreamOptions parse(const json& object) {
         format, kFormat));
   }
   if (format < 1) throw BadMessage(fmt::format("it has format {}, not 1 to {}", format, kFormat));
-  StreamOptions options{.stream = fields.take<std::string>("stream")};
+  StreamOptions options{.format = format, .stream = fields.take<std::string>("stream")};
   ipc::require_stream_name(options.stream);
   options.wall_offset = Time(fields.take<std::int64_t>("wall_offset_ns"));
   const json& solver = fields.at("solver");

@@ -12,17 +12,18 @@
 
 namespace splinecast::apps::record {
 
+/// Version of the format. In format 1, the log time of a message is its time on the stream and the
+/// publish time when the recorder saw it; there are no accounts, and losses have no numbers.
+inline constexpr int kFormat = 2;
+
 /// The options of a stream, as a recording has them.
 struct StreamOptions {
+  int format = kFormat;  ///< of the file
   std::string stream{};
   ipc::RegionHeader waypoints{};              ///< of the producer's region
   std::optional<ipc::RegionHeader> spline{};  ///< of the solver's region; empty: no solver yet
   Time wall_offset{};  ///< of a live stream: its times plus this are times of the wall clock
 };
-
-/// Version of the format. In format 1, the log time of a message is its time on the stream and the
-/// publish time when the recorder saw it; there are no accounts, and losses have no numbers.
-inline constexpr int kFormat = 2;
 
 /// The message of the exact channel and the metadata of a stream are this JSON object. Numbers are
 /// written so that they read back exactly.

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <array>
+
 #include "apps/record/format/messages.hpp"
 
-/// The messages of segments and restarts.
+/// The messages of segments, restarts and summaries.
 namespace splinecast::apps::record {
 namespace {
 
@@ -121,7 +123,22 @@ ipc::RestartKnot take_knot(ByteReader& in, std::size_t dimensions, std::uint8_t 
   return knot;
 }
 
+/// The members of a summary, in the order of the message.
+constexpr std::array kSummaryWords{
+    &ipc::Summary::revision,     &ipc::Summary::first,     &ipc::Summary::newest,
+    &ipc::Summary::run_item,     &ipc::Summary::run_knots, &ipc::Summary::run_frozen,
+    &ipc::Summary::consumed,     &ipc::Summary::knots,     &ipc::Summary::passed_over,
+    &ipc::Summary::withdrawn,    &ipc::Summary::controls,  &ipc::Summary::refused,
+    &ipc::Summary::exceeding,    &ipc::Summary::underruns, &ipc::Summary::deadline_misses,
+    &ipc::Summary::late_commits,
+};
+
 }  // namespace
+
+std::string_view to_string(SegmentKind kind) noexcept {
+  constexpr std::array<std::string_view, 5> kNames{"spline", "entry", "stop", "hold", "slowed"};
+  return kNames.at(static_cast<std::size_t>(kind));
+}
 
 Bytes encode(const ipc::SegmentCopy& segment) {
   constexpr std::size_t kFixed = 72;
@@ -172,6 +189,41 @@ Restart decode_restart(std::span<const std::byte> bytes, std::size_t dimensions)
   }
   in.require_end();
   return restart;
+}
+
+Bytes encode(const Published& published) {
+  const ipc::Summary& summary = published.summary;
+  Bytes bytes;
+  bytes.push_back(static_cast<std::byte>(RecordKind::summary));
+  ByteWriter out(bytes);
+  out.put(static_cast<std::uint8_t>(summary.finished ? 1 : 0))
+      .put(summary.settled_until)
+      .put(summary.newest_time);
+  for (const auto member : kSummaryWords) out.put(summary.*member);
+  out.put(summary.end_kind).put(summary.end_item).put(summary.end_lateness);
+  if (!published.open) return bytes;
+  out.put(published.open->until);
+  put(out, published.open->segment);
+  return bytes;
+}
+
+Published decode_published(std::span<const std::byte> bytes, std::size_t dimensions) {
+  ByteReader in(bytes);
+  Published published;
+  ipc::Summary& summary = published.summary;
+  summary.finished = in.take<std::uint8_t>() != 0;
+  summary.settled_until = in.take_time();
+  summary.newest_time = in.take_time();
+  for (const auto member : kSummaryWords) summary.*member = in.take<ipc::Word>();
+  if (in.rest().empty()) return published;  // of an earlier version
+  summary.end_kind = in.take<ipc::Word>();
+  summary.end_item = in.take<ipc::Word>();
+  summary.end_lateness = in.take_time();
+  if (in.rest().empty()) return published;
+  published.open.emplace().until = in.take_time();
+  published.open->segment = take_segment(in, dimensions);
+  in.require_end();
+  return published;
 }
 
 }  // namespace splinecast::apps::record

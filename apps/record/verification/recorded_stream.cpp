@@ -31,7 +31,7 @@ void RecordedStream::take(std::span<const std::byte> message) {
     case RecordKind::restart:
       return take_restart(decode_restart(body, dimensions));
     case RecordKind::summary:
-      summary_ = decode_summary(body);
+      summary_ = decode_published(body, dimensions).summary;
       return;
     case RecordKind::account:
       return take_account(decode_account(body));

@@ -3,34 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <functional>
-#include <span>
 #include <string_view>
 
-#include "apps/files/text_file.hpp"
-#include "apps/mcap/input/reader.hpp"
 #include "apps/process/exit_codes.hpp"
+#include "apps/record/executed/exact_messages.hpp"
 #include "apps/streams/log.hpp"
 #include "ipc/memory/names.hpp"
 
 namespace splinecast::apps::record {
 namespace {
-
-constexpr std::string_view kExactEncoding = "splinecast";
-
-/// The name of the stream of an exact channel: `/NAME/splinecast`; empty for other channels.
-std::string_view stream_of(const mcap::Channel& channel) noexcept {
-  constexpr std::string_view kEnd = "/splinecast";
-  std::string_view topic = channel.topic;
-  if (channel.message_encoding != kExactEncoding || !topic.starts_with('/') ||
-      !topic.ends_with(kEnd) || topic.size() <= kEnd.size() + 1) {
-    return {};
-  }
-  topic.remove_prefix(1);
-  topic.remove_suffix(kEnd.size());
-  return topic;
-}
 
 /// Whether anything could be verified.
 bool has_equal(const FileVerification& found) {
@@ -58,61 +40,16 @@ std::string line_of(const StreamVerification& stream) {
   return line;
 }
 
-[[noreturn]] void refuse(const std::string& file, const mcap::Message& message,
-                         const BadMessage& error) {
-  throw InputError(fmt::format("{}: message {} of {}: {}", ipc::printable(file), message.number,
-                               ipc::printable(message.channel->topic), error.what()));
-}
-
-/// Whether a path is a regular MCAP file for which `look` returns true. False if it cannot be read.
-bool looks(const std::string& path, const std::function<bool(mcap::Reader& reader)>& look) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe can be read only once
-  try {
-    const TextFile file(path);
-    const auto bytes = std::as_bytes(std::span(file.text()));
-    if (!mcap::is_mcap(bytes)) return false;
-    mcap::Reader reader(file.name(), bytes);
-    return look(reader);
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
 }  // namespace
 
-bool is_mcap_file(const std::string& path) {
-  return looks(path, [](mcap::Reader& /*reader*/) { return true; });
-}
-
-bool is_recording(const std::string& path) {
-  return looks(path, [](mcap::Reader& reader) {
-    constexpr int kMostLooked = 1000;
-    mcap::Message message;
-    for (int i = 0; i < kMostLooked && reader.next(message); ++i) {
-      if (message.channel->message_encoding == kExactEncoding) return true;
-    }
-    return false;
-  });
-}
-
 FileVerification verify_file(const std::string& path, const std::string& stream) {
-  const TextFile file(path);
-  mcap::Reader reader(file.name(), std::as_bytes(std::span(file.text())));
   std::map<std::string, RecordedStream, std::less<>> streams;
-  mcap::Message message;
-  while (reader.next(message)) {
-    const std::string_view name = stream_of(*message.channel);
-    if (name.empty() || (!stream.empty() && name != stream)) continue;
+  const ExactFile file = read_exact(path, stream, [&](std::string_view name, const auto& message) {
     auto found = streams.find(name);
     if (found == streams.end()) found = streams.try_emplace(std::string(name)).first;
-    try {
-      found->second.take(message.data);
-    } catch (const BadMessage& error) {
-      refuse(path, message, error);
-    }
-  }
-  FileVerification found{.file = file.name(), .ended_early = reader.ended_early()};
+    found->second.take(message.data);
+  });
+  FileVerification found{.file = file.name, .ended_early = file.ended_early};
   for (auto& [name, recorded] : streams) {
     recorded.finish();
     found.streams.emplace(name, recorded.found());

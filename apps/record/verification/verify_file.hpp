@@ -17,11 +17,6 @@ struct FileVerification {
   std::map<std::string, StreamVerification> streams{};
 };
 
-/// Whether a path is a regular file in the format MCAP, by its first bytes; and whether it is one
-/// that `record` wrote, by its first messages. False if it cannot be read.
-[[nodiscard]] bool is_mcap_file(const std::string& path);
-[[nodiscard]] bool is_recording(const std::string& path);
-
 /// Solves the streams of a recording again, from their items and the decisions that their segments
 /// show, and compares every segment bit by bit: see ipc::verify. `stream`: the only one to verify;
 /// empty: all. Throws InputError, with file and message, for a damaged file, for one without

@@ -88,7 +88,8 @@ void BoardWatch::look_back(Batch& batch) {
 void BoardWatch::put_summary(Batch& batch) {
   last_summary_ = batch.now;
   if (summary_.revision == 0) return;
-  batch.add(record(RecordKind::summary, summary_.revision, batch.now, encode(summary_)));
+  batch.add(record(RecordKind::summary, summary_.revision, batch.now,
+                   encode(Published{.summary = summary_, .open = settled_.open()})));
 }
 
 void BoardWatch::put_event(Batch& batch, EventKind kind, const std::string& members) const {

@@ -15,6 +15,7 @@
 #include "ipc/layout/summary.hpp"
 #include "ipc/roles/internals.hpp"
 #include "splinecast/stopper.hpp"
+#include "tests/apps/record/live_reader.hpp"
 #include "tests/apps/record/recorded.hpp"
 #include "tests/fixtures/messages/rows_of.hpp"
 
@@ -202,6 +203,24 @@ TEST_F(RecordLive, ReplacementsStarvationAndATakeoverVerifyAndReadBackWithoutWha
     rows.emplace_back(row.time, row.position[0]);
   }
   EXPECT_EQ(rows, source.rows());
+}
+
+TEST_F(RecordLive, ASampleOfTheFileHasTheBitsAndStatusesThatAReaderGot) {
+  LiveSource source(name());
+  std::vector<LiveRow> rows;
+  (void)record(source, [&] {
+    LiveReader reader(name());
+    source.run(milliseconds(500), milliseconds(200));
+    source.starve(milliseconds(1000));
+    source.begin_at(source.clock.now() + milliseconds(600));
+    source.run(milliseconds(900), milliseconds(600));
+    source.replace(milliseconds(100), 30);
+    source.run(milliseconds(200), milliseconds(200));
+    source.starve(milliseconds(300));  // until nothing but what has settled can be sampled
+    rows = reader.stop();
+  });
+  ASSERT_EQ(events("late"), 0U) << "on a slow machine: the curve has changed after it was sampled";
+  EXPECT_GT(expect_sampled_alike(path(), name(), rows), 200U);
 }
 
 TEST_F(RecordLive, StopsOfStoppersVerifyAndAreEvents) {

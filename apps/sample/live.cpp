@@ -1,14 +1,13 @@
+#include "apps/sample/live.hpp"
+
 #include <fmt/format.h>
 
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <vector>
 
-#include "apps/cli/options.hpp"
-#include "apps/cli/verb.hpp"
 #include "apps/output/samples.hpp"
 #include "apps/output/stream.hpp"
 #include "apps/process/exit_codes.hpp"
@@ -22,29 +21,18 @@
 namespace splinecast::apps {
 namespace {
 
-struct SampleOptions {
-  std::string stream;
-  std::string at;
-  std::optional<TimeUnit> time_unit;
-  double rate = 0;
-  std::size_t count = 0;
-  std::string output;
-  Time wait{10'000'000'000};
-  Trust trust;
-};
-
 /// Samples one stream to a file. Attaches again if the stream is recreated.
 class Sampling {
  public:
   Sampling(const SampleOptions& options, std::vector<Time> times)
       : options_(options),
         times_(std::move(times)),
-        reader_(attach_reader(options.stream, options.wait, options.trust)),
+        reader_(attach_reader(options.names.back(), options.wait, options.trust)),
         // With --rate others can follow the file while it grows.
         output_(options.output, options.at.empty() ? Writing::growing : Writing::whole),
         state_(reader_.dimensions()),
         none_(reader_.dimensions()),
-        writer_(output_, reader_.dimensions(), reader_.kinds(), true) {
+        writer_(output_, reader_.dimensions(), reader_.kinds(), "status") {
     fill_with_nan(none_);
   }
 
@@ -100,7 +88,7 @@ class Sampling {
       if (const auto first = reader_.first_time()) return *first;
       if (stop_requested()) throw Interrupted("interrupted");
       if (clock_.now() >= end) {
-        throw TimeOut(fmt::format("stream '{}' has no waypoints", options_.stream));
+        throw TimeOut(fmt::format("stream '{}' has no waypoints", options_.names.back()));
       }
       (void)reader_.wait(std::chrono::milliseconds(50));
     }
@@ -137,7 +125,7 @@ class Sampling {
       } else if (clock_.now() >= end) {
         patient_ = false;
         say(fmt::format("stream '{}': nothing new for {} s; samples from {} ns on are not settled",
-                        options_.stream, to_seconds(options_.wait), t.count()));
+                        options_.names.back(), to_seconds(options_.wait), t.count()));
       }
     }
   }
@@ -153,14 +141,14 @@ class Sampling {
 
   void reattach() {
     const auto dimensions = ipc::dimensions_of(ipc::Internals::header(reader_));
-    reader_ = attach_reader(options_.stream, options_.wait, options_.trust);
+    reader_ = attach_reader(options_.names.back(), options_.wait, options_.trust);
     if (reader_.dimensions() != dimensions.size()) {
       throw Failure(fmt::format("stream '{}' was recreated with {} dimensions, not {}",
-                                options_.stream, reader_.dimensions(), dimensions.size()));
+                                options_.names.back(), reader_.dimensions(), dimensions.size()));
     }
     if (ipc::dimensions_of(ipc::Internals::header(reader_)) == dimensions) return;
     throw Failure(
-        fmt::format("stream '{}' was recreated with other dimension kinds", options_.stream));
+        fmt::format("stream '{}' was recreated with other dimension kinds", options_.names.back()));
   }
 
   const SampleOptions& options_;
@@ -174,58 +162,10 @@ class Sampling {
   bool patient_ = true;  ///< whether to wait for samples that are not settled
 };
 
-/// The last sample's time must be in range.
-void require_span(const SampleOptions& options) {
-  if (options.count == 0) return;  // --at
-  const double seconds = static_cast<double>(options.count - 1) / options.rate;
-  const double most = to_seconds(kLongestTime);
-  if (seconds <= most) return;
-  throw UsageError("--count", fmt::format("{} samples at {} Hz take {} s; the maximum is {} s",
-                                          options.count, options.rate, seconds, most));
-}
+}  // namespace
 
-int run_sample(const SampleOptions& options) {
-  require_separate(std::array{options.output}, std::array{options.at});
-  // Read the times before the output is opened: here a signal still ends the process at once.
-  auto times = options.at.empty() ? std::vector<Time>{}
-                                  : read_times(options.at, {.time_unit = options.time_unit});
-  catch_stop_signals();
+int sample_stream(const SampleOptions& options, std::vector<Time> times) {
   return Sampling(options, std::move(times)).run();
 }
-
-void add_sample(Command& verb, Action& action) {
-  auto options = std::make_shared<SampleOptions>();
-  verb.option("STREAM", options->stream, "Name of the stream to read").required();
-  const Argument at =
-      verb.option("--at", options->at, "File with a time column: times at which to sample")
-          .type("FILE");
-  Argument rate = verb.option(
-      "--rate",
-      [options](const std::string& text) { options->rate = number_within("--rate", text); },
-      "Sampling rate in Hz, 1e-6 to 1e9; needs --count");
-  rate.type("HZ");
-  Argument count =
-      add_count(verb, "--count", options->count, "Number of samples, from 1; needs --rate");
-  rate.needs(count).excludes(at);
-  count.needs(rate);
-  verb.option("-o,--output", options->output, "Output file (default: standard output)").type("OUT");
-  add_seconds(
-      verb, "--wait", options->wait,
-      "Time in s to wait for the stream and, on a recorded stream, for new settled samples, "
-      "from 0 (default 10)");
-  add_time_unit(verb, options->time_unit);
-  add_trust(verb, options->trust);
-  verb.callback([&action, options, at, rate] {
-    if (!at.is_given() && !rate.is_given()) {
-      throw UsageError("sample", "needs --at, or --rate with --count");
-    }
-    require_span(*options);
-    action = [options] { return run_sample(*options); };
-  });
-}
-
-const Verb sample_verb("sample", 40, "Sample the curve of a stream and write CSV", add_sample);
-
-}  // namespace
 
 }  // namespace splinecast::apps
