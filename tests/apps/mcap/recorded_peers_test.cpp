@@ -10,7 +10,7 @@
 #include "tests/apps/mcap/recording.hpp"
 #include "tests/apps/record/recorded.hpp"
 
-/// Files that `record` is writing, has ended, or has left behind when it was killed.
+/// Files that `record` is writing, has ended, or had written when it was killed.
 namespace splinecast::testing {
 namespace {
 

@@ -13,7 +13,7 @@
 
 namespace splinecast::campaign::record {
 
-/// What a run has left behind.
+/// What there is after a run.
 struct Remains {
   std::vector<Sent> sent{};
   std::optional<int> code{};  ///< of the recorder

@@ -27,7 +27,7 @@ SolverOptions solver_options(const Shape& shape) {
 
 ProducerOptions producer_options(const SourcePlan& plan, const Shape& shape) {
   ProducerOptions options{.dimensions = shape.dimensions, .capacity = shape.capacity};
-  options.start_tolerance = 1e6;  // wherever the stream before has ended
+  options.start_tolerance = 1e6;  // the stream before may have ended anywhere
   if (plan.kind == SourceKind::follower) {
     options.clock = StreamClock::law;
     options.law = plan.law;

@@ -16,10 +16,10 @@ enum class Attack : std::uint8_t {
   none,
   paused,       ///< SIGSTOP for 0.2 to 3 s
   slow,         ///< the disk writes about 1 MB/s at times
-  full,         ///< the disk is full for a while
+  full,         ///< the disk is full for 0.2 to 1.5 s
   full_at_end,  ///< the disk is full, and remains so
   killed,       ///< SIGKILL
-  interrupted,  ///< SIGINT while all goes on, sometimes paused or with a slow or full disk
+  interrupted,  ///< SIGINT before the streams end, sometimes paused or with a slow or full disk
   dumps,        ///< --last, with events and triggers
   rotated,      ///< --max-size and triggers: several files, one after the other
   renamed,      ///< the file gets another name

@@ -11,7 +11,7 @@ class Tally {
  public:
   Tally();
 
-  /// Counts violations of a kind that Tally() lists, and prints why.
+  /// Counts violations, and prints why. Tally() lists the kinds.
   void find(const std::string& kind, std::uint64_t seed, const std::string& why,
             std::uint64_t count = 1);
   /// Counts work.

@@ -10,8 +10,10 @@
 
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/signals.hpp"
+#include "ipc/memory/names.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/producer.hpp"
+#include "splinecast/stopper.hpp"
 #include "splinecast/streams.hpp"
 
 namespace splinecast::campaign::record {
@@ -24,12 +26,18 @@ Trial::Trial(const RunPlan& plan, Tally& tally)
 Trial::~Trial() {
   sources_.clear();
   recorder_.reset();
-  for (const std::string& stream : stream_names()) {
-    if (!stream.starts_with(plan_.prefix)) continue;
+  std::vector<std::string> streams{plan_.prefix + ".last"};
+  for (const SourcePlan& source : plan_.sources) streams.push_back(source.stream);
+  if (!plan_.law.empty()) streams.push_back(plan_.law);
+  for (const std::string& stream : streams) {
     try {
+      // A stop remains in force, also without a stream.
+      for (const auto& stopper : ipc::requester_names(stream, ipc::RegionKind::stopper)) {
+        (void)Stopper(stream, stopper).release();
+      }
       remove_stream(stream);
     } catch (const StreamError&) {
-      continue;  // it is being removed
+      continue;  // its sender has removed it
     }
   }
 }
@@ -135,7 +143,7 @@ void Trial::fill() {
   tally_.count("full disks");
 }
 
-/// Ends the recorder while the streams go on.
+/// Ends the recorder before the streams end.
 void Trial::interrupt() {
   sleep(0, 1);
   const std::size_t how = random_.below(4);
