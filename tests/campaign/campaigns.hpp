@@ -25,8 +25,10 @@ struct CampaignOptions {
   double seconds = 2;      ///< stress: of each part; streams and returns: CPU time of the campaign
   std::uint64_t runs = 0;  ///< streams and returns: number of runs, 0: as many as fit into
                            ///< `seconds`; stops: instants at which waypoints end, 0: 200
-  Beyond beyond{};         ///< motions and returns: of the streams with limits
-  std::string trace{};     ///< folder for traces of what readers see; empty: none
+  std::uint64_t items = 10'000'000;  ///< of a long recording
+  std::uint64_t names = 100'000;     ///< of a long recording
+  Beyond beyond{};                   ///< motions and returns: of the streams with limits
+  std::string trace{};               ///< folder for traces of what readers see; empty: none
 };
 
 /// The CPU time that this process has used [s]. It limits campaigns of simulated streams: they then
@@ -112,6 +114,15 @@ struct CampaignOptions {
 /// Kills a stopper of a live stream, and the solver that hears it, before each of their stores.
 /// Needs a build with hooks.
 [[nodiscard]] Result run_every_store_of_stops(const CampaignOptions& options);
+
+/// The program `record` beside random streams, in processes of their own, on a disk that can be
+/// slow or full, one run per seed from `seed` on. Checks from its files alone that each item and
+/// each segment is recorded or lost. `seconds` is the duration, unless `runs` is given.
+[[nodiscard]] Result run_recorders(const CampaignOptions& options);
+
+/// One recorder of `names` streams, which come and go, with `items` in all. Prints and measures the
+/// memory that it takes.
+[[nodiscard]] Result run_long_recording(const CampaignOptions& options);
 
 /// The faults of the motions, one per line: the name of their plots (may be empty), a tab and a
 /// description.

@@ -41,6 +41,7 @@ struct Asked {
   bool is_recorded = false;
   bool has_processes = false;
   bool lists = false;
+  bool is_long = false;
 };
 
 using Run = Result (*)(const CampaignOptions&);
@@ -136,6 +137,19 @@ void add_requests(CLI::App& program, Asked& asked) {
       "Kill a stopper and its solver before each store instead; needs a build with hooks");
 }
 
+void add_record(CLI::App& program, Asked& asked) {
+  auto* verb = program.add_subcommand("record", "The recorder, its files and its disk");
+  add_runs(verb, asked, "Duration");
+  auto* is_long = verb->add_flag("--long", asked.is_long, "Measure the memory of a recorder");
+  verb->add_option("--items", asked.options.items, "With --long: number of items")
+      ->capture_default_str()
+      ->needs(is_long);
+  verb->add_option("--names", asked.options.names, "With --long: number of streams")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber)
+      ->needs(is_long);
+}
+
 /// The campaign of the given verb and flags.
 Run run_of(const CLI::App& program, const Asked& asked) {
   if (asked.has_encoders) return run_stops;
@@ -149,6 +163,8 @@ Run run_of(const CLI::App& program, const Asked& asked) {
   if (program.got_subcommand("follow")) return run_follow;
   if (program.got_subcommand("streams")) return run_streams;
   if (program.got_subcommand("stress")) return run_stress;
+  if (asked.is_long) return run_long_recording;
+  if (program.got_subcommand("record")) return run_recorders;
   if (program.got_subcommand("requests")) {
     if (asked.every_store) return run_every_store_of_stops;
     return asked.options.runs > 0 ? run_simulated_requests : run_requests;
@@ -161,7 +177,7 @@ int run_program(int argc, char** argv) {
   program.require_subcommand(1);
   Asked asked{.options = {.command = joined(argc, argv)}};
   for (const auto& add : {add_kill, add_stress, add_streams, add_ends, add_starts, add_plans,
-                          add_motions, add_returns, add_follow, add_requests}) {
+                          add_motions, add_returns, add_follow, add_requests, add_record}) {
     add(program, asked);
   }
   for (const char* name : {"motions", "returns"}) add_enter(program.get_subcommand(name), asked);

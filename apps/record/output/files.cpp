@@ -67,8 +67,9 @@ void Files::take_events(const Batch& batch) {
 void Files::take(Record record) {
   ++report_.records[record.kind];
   accounts_.add(record);
-  if (record.kind == RecordKind::options && file_ && !file_->can_begin_stream()) {
-    rotate(record.seen);
+  if (record.kind == RecordKind::options && file_) {
+    if (!file_->can_begin_stream()) rotate(record.seen);
+    if (file_) end_chunk(record.seen);  // as the metadata of the stream would
   }
   if (file_) {
     write(record);
@@ -85,7 +86,8 @@ void Files::take(Record record) {
   if (is_data) data_until_ = memory_.added();
   if (is_end) end_stream(stream, now);
   if (file_ && file_->failed()) return fail(file_->why(), now);
-  if (file_ && memory_.bytes() > RecordMemory::kMostHeld / 2) end_chunk(now);
+  const bool is_chunk_due = memory_.bytes() > RecordMemory::kMostHeld / 2;
+  if (file_ && (is_chunk_due || !file_->has_open_chunk())) end_chunk(now);
 }
 
 /// The next record of the same number belongs to another stream.
@@ -145,6 +147,7 @@ void Files::write_account(const Accounts::Key& stream, Time now, bool is_needed)
 void Files::write_accounts(Time now) {
   if (!file_ || file_->failed()) return;
   for (const auto& stream : accounts_.all_changed()) write_account(stream, now, false);
+  if (!file_->has_open_chunk()) note_whole_chunks();
 }
 
 void Files::say_losses() {

@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -20,6 +21,10 @@ namespace {
 constexpr std::string_view kJson = "json";
 constexpr std::string_view kJsonSchema = "jsonschema";
 constexpr mode_t kMode = 0600;
+/// Uncompressed size at which a chunk ends. Only between two records, so that a whole chunk has
+/// whole records: the writer itself ends none.
+constexpr std::size_t kChunkBytes = std::size_t{1} << 20U;
+constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
 
 int create(const std::string& path) {
   const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
@@ -52,7 +57,8 @@ RecordingFile::RecordingFile(std::string path, const FileOptions& options)
     : path_(std::move(path)), options_(options), descriptor_(create(path_)), id_(file_id(path_)) {
   const auto write = [this](std::span<const std::byte> bytes) { return write_bytes(bytes); };
   writer_ = std::make_unique<mcap::Writer>(
-      write, mcap::WriterOptions{.profile = "", .compression = options_.compression});
+      write, mcap::WriterOptions{
+                 .profile = "", .compression = options_.compression, .chunk_bytes = kNever});
 }
 
 RecordingFile::~RecordingFile() {
@@ -116,6 +122,11 @@ void RecordingFile::begin_stream(const Record& record) {
 }
 
 void RecordingFile::write(const Record& record) {
+  write_messages(record);
+  if (writer_->open_bytes() >= kChunkBytes) end_chunk();
+}
+
+void RecordingFile::write_messages(const Record& record) {
   if (record.kind == RecordKind::options) begin_stream(record);
   const auto found = streams_.find(record.stream);
   if (found == streams_.end()) throw BadMessage("its stream has no options");

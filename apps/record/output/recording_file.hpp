@@ -89,6 +89,7 @@ class RecordingFile {
 
   bool write_bytes(std::span<const std::byte> bytes);
   void cut_to_whole_chunks() noexcept;
+  void write_messages(const Record& record);
   void begin_stream(const Record& record);
   std::uint16_t add_channel(const std::string& topic, std::string_view schema,
                             const std::string& text);

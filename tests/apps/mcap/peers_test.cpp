@@ -5,7 +5,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "tests/apps/mcap/npm_peers.hpp"
+#include "tests/apps/mcap/core_peer.hpp"
 #include "tests/apps/mcap/recording.hpp"
 
 namespace splinecast::testing {
@@ -13,36 +13,6 @@ namespace {
 
 namespace mcap = apps::mcap;
 using nlohmann::json;
-
-/// The peer is @mcap/core.
-class McapPeers : public NpmPeersTest {
- protected:
-  /// What the peer reads of a file.
-  [[nodiscard]] json read(const std::string& file) const {
-    const Ended ended = peer("peer.mjs", {"read", folder_.write("read.mcap", file)});
-    EXPECT_EQ(ended.code, 0) << ended.err;
-    return ended.code == 0 ? json::parse(ended.out) : json();
-  }
-
-  TestFolder folder_;
-};
-
-constexpr std::array kAll{mcap::Compression::none, mcap::Compression::lz4, mcap::Compression::zstd};
-
-std::string hex(const std::string& text) {
-  std::string hex;
-  for (const char c : text) hex += fmt::format("{:02x}", static_cast<unsigned char>(c));
-  return hex;
-}
-
-json json_of(const std::vector<KeptMessage>& messages) {
-  json list = json::array();
-  for (const KeptMessage& m : messages) {
-    list.push_back({m.topic, m.sequence, std::to_string(m.log_time), std::to_string(m.publish_time),
-                    hex(m.data)});
-  }
-  return list;
-}
 
 /// Checks a file of SmallRecording with its first `count` messages.
 void expect_read(const json& read, const SmallRecording& recording, std::size_t count) {
@@ -67,14 +37,14 @@ void expect_read(const json& read, const SmallRecording& recording, std::size_t 
 }
 
 TEST_F(McapPeers, ReadEveryChannelThatWeWrite) {
-  for (const auto compression : kAll) {
+  for (const auto compression : kCompressions) {
     const SmallRecording recording(compression);
     expect_read(read(recording.file), recording, 9);
   }
 }
 
 TEST_F(McapPeers, ReadEveryChannelAfterRecovery) {
-  for (const auto compression : kAll) {
+  for (const auto compression : kCompressions) {
     const SmallRecording recording(compression, false);
     const Recovered recovered = recover_text(recording.file.substr(0, recording.file.size() - 1));
     ASSERT_EQ(recovered.report.kept.messages, 9U);  // the last message index is cut off
@@ -87,7 +57,7 @@ TEST_F(McapPeers, ReadEveryChannelAfterRecovery) {
 }
 
 TEST_F(McapPeers, ReadManyChunksAndChannels) {
-  for (const auto compression : kAll) {
+  for (const auto compression : kCompressions) {
     MemoryFileWriter out({.profile = "", .compression = compression, .chunk_bytes = 10'000});
     std::vector<KeptMessage> written;
     for (int i = 0; i < 50; ++i) out.writer.add_channel(0, fmt::format("/{}", i), "");

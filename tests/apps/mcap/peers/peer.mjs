@@ -1,5 +1,6 @@
 // Reads and writes MCAP files with @mcap/core, for peers_test.cpp.
 //   node peer.mjs read FILE                                 prints what the indexed and the streaming reader found, as JSON
+//   node peer.mjs beginning FILE                            the same of a file that is cut off, without an index
 //   node peer.mjs write FILE none|lz4|zstd|unchunked COUNT  writes COUNT messages, as message() computes them
 import { readFile, writeFile } from "node:fs/promises";
 
@@ -88,5 +89,6 @@ if (command === "write") {
 } else {
   const buffer = await readFile(file);
   const handlers = await loadDecompressHandlers();
-  console.log(JSON.stringify({ indexed: await readIndexed(buffer, handlers), stream: readStream(buffer, handlers) }));
+  const indexed = command === "read" ? await readIndexed(buffer, handlers) : undefined;
+  console.log(JSON.stringify({ indexed, stream: readStream(buffer, handlers) }));
 }
