@@ -197,8 +197,10 @@ bool StreamReplay::rests_at_last_waypoint() {
          same_bits(window.knot(window.knots() - 1).position, begin_.position());
 }
 
-/// Requires that each waypoint before item `end` is on the curve or was replaced.
+/// Requires that each waypoint before item `end` is on the curve or was replaced. A plan of a law
+/// takes the place of all waypoints before it.
 bool StreamReplay::expect_all_used(Word end) {
+  if (record_.items.is_taken(end, ItemKind::rate)) return true;
   auto missed = record_.items.find(ItemKind::waypoint, target_.used(), end);
   while (missed) {
     const auto replaced = decisions_.replacements().find(*missed, end);
