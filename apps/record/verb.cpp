@@ -18,7 +18,7 @@ namespace splinecast::apps::record {
 namespace {
 
 constexpr TimeRange kLast{Time(1), std::chrono::hours(24)};
-constexpr NumberRange kStates{1e-3, 1e5};
+constexpr NumberRange kStatesRange{1e-3, 1e5};
 
 /// A size in bytes, with a suffix KiB, MiB, GiB or none.
 std::uint64_t size_within(const std::string& name, const std::string& text) {
@@ -85,9 +85,12 @@ void add_files(Command& verb, RecordOptions& options) {
   verb.option(
           "--states",
           [&options](const std::string& text) {
-            options.output.file.states_hz = number_within("--states", text, kStates);
+            const bool is_off = parse_number(text) == 0.0;
+            options.output.file.states = {
+                .hz = is_off ? 0 : number_within("--states", text, kStatesRange)};
           },
-          "Also write the settled curve, sampled at this rate in Hz, 1e-3 to 1e5")
+          "Rate of the states, which are the settled curve, in Hz, 1e-3 to 1e5; 0: none (default "
+          "100)")
       .type("HZ");
   verb.option(
           "--max-size",

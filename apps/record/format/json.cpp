@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 #include "apps/record/format/messages.hpp"
 #include "apps/record/format/options.hpp"
 #include "ipc/options/stream.hpp"
+#include "ipc/verification/difference.hpp"
 
 namespace splinecast::apps::record {
 namespace {
@@ -41,7 +43,9 @@ void append_number(std::string& text, double value) {
   if (value == 0) {
     text += std::signbit(value) ? "-0.0" : "0";
   } else if (std::isfinite(value)) {
-    append(text, "{}", value);
+    std::array<char, 32> digits{};
+    const char* const end = std::to_chars(digits.begin(), digits.end(), value).ptr;
+    text.append(digits.data(), static_cast<std::size_t>(end - digits.data()));
   } else {
     text += "null";
   }
@@ -53,7 +57,7 @@ JsonMessages::JsonMessages(const ipc::RegionHeader& header) : units_(ipc::dimens
 
 void JsonMessages::values(std::string_view name, std::span<const double> values) {
   if (values.empty()) return;
-  append(text_, ",\"{}\":{{", name);
+  text_.append(",\"").append(name).append("\":{");
   for (std::size_t d = 0; d < values.size() && d < keys_.size(); ++d) {
     if (d > 0) text_ += ',';
     text_ += keys_[d];
@@ -87,14 +91,12 @@ std::string_view JsonMessages::waypoint(const NumberedItem& numbered) {
   return text_;
 }
 
-std::string_view JsonMessages::state(Time time, std::span<const double> position,
-                                     std::span<const double> velocity,
-                                     std::span<const double> acceleration) {
+std::string_view JsonMessages::state(Time time, SegmentKind kind, const State& state) {
   text_.clear();
-  append(text_, R"({{"time_ns":{})", time.count());
-  values("position", position);
-  values("velocity", velocity);
-  values("acceleration", acceleration);
+  append(text_, R"({{"time_ns":{},"kind":"{}")", time.count(), ipc::in_words(kind));
+  values("position", state.position());
+  values("velocity", state.velocity());
+  values("acceleration", state.acceleration());
   text_ += '}';
   return text_;
 }
@@ -127,20 +129,25 @@ std::string JsonMessages::waypoint_schema() const {
       R"("request":{"type":"integer"})");
 }
 
-std::string JsonMessages::state_schema() const { return schema("splinecast.State", ""); }
+std::string JsonMessages::state_schema() const {
+  return schema("splinecast.State",
+                R"(,"kind":{"type":"string","description":"of the segment of the curve",)"
+                R"("enum":["spline","entry","stop","hold","slowed"]})");
+}
 
 std::string JsonMessages::event_schema() {
   std::string text =
       fmt::format(R"({{"title":"splinecast.Event","type":"object","properties":{{{},)"
                   R"("event":{{"type":"string"}})",
                   kTimeProperty);
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kTypes{{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kTypes{{
       {"string", "reason role dimension limit_kind state stopper"},
       {"integer", "count item pid epoch request missed"},
       {"integer", "items segments refusals others first_item first_segment"},
       {"integer:time of the stream, ns", "at_ns"},
       {"number:in the unit of the dimension, per s, s² or s³ by limit_kind", "value limit"},
-      {"boolean", "refused"},
+      {"integer:ns", "away_ns"},
+      {"boolean", "refused executed"},
       {"boolean:it occurred before the recorder attached", "old"},
       {"string:of earlier versions", "text"},
   }};

@@ -9,6 +9,8 @@
 
 #include "apps/record/format/messages.hpp"
 #include "ipc/layout/header.hpp"
+#include "splinecast/piecewise_polynomial.hpp"
+#include "splinecast/state.hpp"
 #include "splinecast/time.hpp"
 
 namespace splinecast::apps::record {
@@ -23,10 +25,9 @@ class JsonMessages {
   /// An item, as `/NAME/waypoints` has it. A view, valid until the next call.
   [[nodiscard]] std::string_view waypoint(const NumberedItem& numbered);
 
-  /// A sample, as `/NAME/states` has it: D values each.
-  [[nodiscard]] std::string_view state(Time time, std::span<const double> position,
-                                       std::span<const double> velocity,
-                                       std::span<const double> acceleration);
+  /// A sample of a segment of this kind, as `/NAME/states` has it. A view, valid until the next
+  /// call.
+  [[nodiscard]] std::string_view state(Time time, SegmentKind kind, const State& state);
 
   /// JSON Schemas of the channels.
   [[nodiscard]] std::string waypoint_schema() const;

@@ -48,9 +48,9 @@ std::map<std::string, std::string> metadata_of(std::string_view options) {
 
 }  // namespace
 
-RecordingFile::Stream::Stream(const StreamOptions& options, double states_hz)
+RecordingFile::Stream::Stream(const StreamOptions& options, const SamplingRate& rate)
     : dimensions(options.waypoints.dimensions), json(options.waypoints) {
-  if (states_hz > 0) sampled.emplace(options.waypoints, states_hz);
+  if (rate.hz > 0) sampled.emplace(options.waypoints, rate);
 }
 
 RecordingFile::RecordingFile(std::string path, const FileOptions& options)
@@ -104,7 +104,7 @@ std::uint16_t RecordingFile::add_channel(const std::string& topic, std::string_v
 void RecordingFile::begin_stream(const Record& record) {
   const std::string_view text = text_of(std::span(record.bytes).subspan(1));
   const StreamOptions options = parse_options(text);
-  Stream stream(options, options_.states_hz);
+  Stream stream(options, options_.states);
   stream.id = record.number;
   const std::string topic = "/" + options.stream;
   stream.waypoints =
@@ -151,8 +151,7 @@ void RecordingFile::put_states(Stream& stream, const Record& record) {
     const double part = to_seconds(time - segment.left) / to_seconds(segment.right - segment.left);
     const Time own =
         record.own_time + from_seconds(part * to_seconds(record.own_end - record.own_time));
-    put(stream, stream.states, own, record.seen,
-        stream.json.state(time, state.position(), state.velocity(), state.acceleration()));
+    put(stream, stream.states, own, record.seen, stream.json.state(time, segment.kind, state));
   });
 }
 

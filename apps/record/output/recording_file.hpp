@@ -20,9 +20,12 @@
 
 namespace splinecast::apps::record {
 
+/// The rate at which states are recorded unless another one is given.
+inline constexpr SamplingRate kStates{.hz = 100, .most = 1000};
+
 struct FileOptions {
   mcap::Compression compression = mcap::Compression::zstd;
-  double states_hz = 0;  ///< rate of the channel of states; 0: none
+  SamplingRate states = kStates;  ///< of the channel of states
 };
 
 /// Device and inode of the file at a path; empty if no file is there.
@@ -77,7 +80,7 @@ class RecordingFile {
  private:
   /// The channels of a stream, and what its messages are made with.
   struct Stream {
-    Stream(const StreamOptions& options, double states_hz);
+    Stream(const StreamOptions& options, const SamplingRate& rate);
 
     ipc::Word id = 0;
     std::uint16_t exact = 0, waypoints = 0, events = 0, states = 0;

@@ -3,29 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/polynomial/segment.hpp"
 #include "ipc/options/stream.hpp"
 
 namespace splinecast::apps::record {
 
-States::States(const ipc::RegionHeader& header, double hz)
+States::States(const ipc::RegionHeader& header, const SamplingRate& rate)
     : kinds_(ipc::dimension_kinds(header)),
-      interval_(std::max<std::int64_t>(1, std::llround(1e9 / hz))),
+      interval_(std::max<std::int64_t>(1, std::llround(1e9 / rate.hz))),
+      most_(rate.most),
       state_(header.dimensions) {}
 
-void States::sample(const ipc::SegmentCopy& segment, const Take& take) {
-  const std::int64_t step = interval_.count();
-  const std::int64_t left = segment.left.count();
-  // The first multiple of the interval from the left end on.
-  const std::int64_t before = left >= 0 ? (left + step - 1) / step : -(-left / step);
-  Time time(before * step);
-  for (std::int64_t n = 0; n < kMost && time < segment.right; ++n, time += interval_) {
-    core::evaluate(segment.order, segment.coefficients, to_seconds(time - segment.left),
-                   state_.ref());
-    const StateRef state = state_.ref();
-    kinds_.normalise(state);
-    take(time, state_);
-  }
+Time States::step_of(const ipc::SegmentCopy& segment) const noexcept {
+  const std::int64_t intervals = (segment.right - segment.left) / interval_;
+  return interval_ * (1 + intervals / most_);
+}
+
+Time States::first_from(Time time, Time step) noexcept {
+  const std::int64_t remainder = time % step / Time(1);
+  const bool is_after_multiple = remainder > 0;
+  return time - Time(remainder) + (is_after_multiple ? step : Time::zero());
 }
 
 }  // namespace splinecast::apps::record

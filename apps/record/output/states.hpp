@@ -1,9 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <span>
 
+#include "core/polynomial/segment.hpp"
 #include "ipc/board/segment.hpp"
 #include "ipc/layout/header.hpp"
 #include "splinecast/dimension_kind.hpp"
@@ -12,23 +11,40 @@
 
 namespace splinecast::apps::record {
 
+/// How the settled curve is sampled.
+struct SamplingRate {
+  double hz = 0;  ///< 0: not sampled; else 1e-3 to 1e5
+  /// Maximum number of states of a segment. A segment with more multiples of the interval is
+  /// sampled at a multiple of it: the curve may rest for days, and waypoints may be hours apart.
+  std::int64_t most = 1'000'000;
+};
+
 /// Samples the settled curve of a stream at a rate, with the bits of a reader: at the multiples of
 /// an interval. One thread uses it.
 class States {
  public:
-  /// `hz`: 1e-3 to 1e5.
-  States(const ipc::RegionHeader& header, double hz);
+  States(const ipc::RegionHeader& header, const SamplingRate& rate);
 
-  using Take = std::function<void(Time time, const State& state)>;
-  /// Samples within [left, right) of the next settled segment, at most kMost times. After a hold
-  /// that is longer than that, continues with the next segment.
-  void sample(const ipc::SegmentCopy& segment, const Take& take);
-
-  static constexpr std::int64_t kMost = 1'000'000;
+  /// Samples within [left, right) of the next settled segment: calls take(Time, const State&).
+  template <typename Take>
+  void sample(const ipc::SegmentCopy& segment, const Take& take) {
+    const Time step = step_of(segment);
+    for (Time time = first_from(segment.left, step); time < segment.right; time += step) {
+      core::evaluate(segment.order, segment.coefficients, to_seconds(time - segment.left),
+                     state_.ref());
+      kinds_.normalise(state_.ref());
+      take(time, state_);
+    }
+  }
 
  private:
+  [[nodiscard]] Time step_of(const ipc::SegmentCopy& segment) const noexcept;
+  /// The first multiple of a step at or after a time.
+  [[nodiscard]] static Time first_from(Time time, Time step) noexcept;
+
   DimensionKinds kinds_;
   Time interval_;
+  std::int64_t most_;
   State state_;
 };
 

@@ -23,10 +23,12 @@ enum class EventKind : std::uint8_t {
   retired,
   lost,
   following,
-  stopped,   ///< a stopper holds the stream
-  released,  ///< it does not any more
+  stopped,        ///< a stopper holds the stream
+  released,       ///< it does not any more
+  returned,       ///< the curve meets a waypoint again
+  limit_settled,  ///< what became of an excess
 };
-inline constexpr std::uint8_t kEventKinds = 13;
+inline constexpr std::uint8_t kEventKinds = 15;
 
 /// An event that a batch has.
 struct EventNote {

@@ -35,6 +35,7 @@ BoardWatch::BoardWatch(std::uint32_t number, ipc::CheckedRegion<ipc::BoardLayout
       times_(times),
       options_(ipc::window_options(board_.header)),
       settled_(reader_, is_live(ipc::stream_clock(board_.header))),
+      excesses_(options_, ipc::dimension_kinds(board_.header)),
       refused_(ipc::kRefusalsKept) {
   board_.region.close_descriptor();
 }
@@ -73,6 +74,7 @@ void BoardWatch::look(Batch& batch) {
   is_finished_ = summary_.finished && settled_.next() >= summary_.newest;
   if (is_finished_ && !was_finished) {
     put_summary(batch);
+    put_settled_excesses(batch, excesses_.finish());
     put_event(batch, EventKind::finished, fmt::format(R"("count":{})", summary_.interpolated()));
   } else if (batch.now - kSummaryInterval >= last_summary_) {
     put_summary(batch);
@@ -113,6 +115,7 @@ void BoardWatch::put_refusals(Batch& batch) {
     put_loss(batch, {.cause = cause(), .refusals = missed});
   }
   for (const ipc::RefusalRecord& refused : std::span(refused_).first(count)) {
+    ring_.note_refused(refused.item);
     batch.add(record(RecordKind::refusal, refused.item, batch.now, encode(refused)));
     put_event(batch, EventKind::refusal,
               fmt::format(R"("item":{},"reason":"{}")", refused.item, to_string(refused.reason)));
@@ -143,11 +146,25 @@ void BoardWatch::put_excesses(Batch& batch) {
   ipc::Word missed = first - std::min(first, summary_.exceeding);
   for (ipc::Word i = first; i < now.exceeding; ++i) {
     const auto excess = reader_.excess(now, i);
-    if (excess) put_event(batch, EventKind::limit, members_of(*excess, names));
-    if (!excess) ++missed;
+    if (!excess) {
+      ++missed;
+      continue;
+    }
+    put_event(batch, EventKind::limit, members_of(*excess, names));
+    if (excess->is_refused) continue;
+    if (const auto dropped = excesses_.add(*excess)) put_settled_excesses(batch, {*dropped});
   }
   // The board keeps the newest ones only.
   if (missed > 0) put_event(batch, EventKind::limit, fmt::format(R"("missed":{})", missed));
+}
+
+void BoardWatch::put_settled_excesses(Batch& batch,
+                                      const std::vector<SettledExcess>& settled) const {
+  if (settled.empty()) return;
+  const auto names = ipc::dimension_names(board_.header);
+  for (const SettledExcess& excess : settled) {
+    put_event(batch, EventKind::limit_settled, members_of(excess, names));
+  }
 }
 
 /// Writes an event when the curve begins or ceases to follow its waypoints.
@@ -186,22 +203,43 @@ void BoardWatch::put_segments(Batch& batch) {
       before = nullptr;
     }
     if (before == nullptr && segment.number == 1 && ring_.complete_from() > 0) needs_start_ = true;
-    // At the first look, and after a loss, the board may still have the knots before this segment.
-    if (needs_start_ && before != nullptr) try_restart(batch, *before);
-    const bool is_start = starts_.take(before, segment);
-    if (is_start && wants_start(batch) && ring_.complete_from() <= *segment.origin.item) {
-      put_restart(batch, {.before = *before, .first_item = *segment.origin.item});
-    }
-    if (is_start) ring_.forget_before(*segment.origin.item);
-    batch.add(record(RecordKind::segment, segment.number, times_.wall_time(segment.left, batch.now),
-                     encode(segment)));
-    batch.records.back().next = std::max(segment.next, segment.number + 1);
-    batch.records.back().own_end = times_.wall_time(segment.right, batch.now);
+    put_segment(batch, before, segment);
   }
   last_ = segments.back();
   has_last_ = true;
   if (wants_start(batch)) try_restart(batch, last_);
   settled_.drop();
+}
+
+void BoardWatch::put_segment(Batch& batch, const ipc::SegmentCopy* before,
+                             const ipc::SegmentCopy& segment) {
+  // At the first look, and after a loss, the board may still have the knots before this segment.
+  if (needs_start_ && before != nullptr) try_restart(batch, *before);
+  const bool is_start = starts_.take(before, segment);
+  if (is_start && wants_start(batch) && ring_.complete_from() <= *segment.origin.item) {
+    put_restart(batch, {.before = *before, .first_item = *segment.origin.item});
+  }
+  if (is_start) ring_.forget_before(*segment.origin.item);
+  batch.add(record(RecordKind::segment, segment.number, times_.wall_time(segment.left, batch.now),
+                   encode(segment)));
+  batch.records.back().next = std::max(segment.next, segment.number + 1);
+  batch.records.back().own_end = times_.wall_time(segment.right, batch.now);
+  put_settled_excesses(batch, excesses_.take(segment));
+  put_return(batch, before, segment);
+}
+
+/// Writes an event when the curve meets a waypoint again.
+void BoardWatch::put_return(Batch& batch, const ipc::SegmentCopy* before,
+                            const ipc::SegmentCopy& segment) {
+  const auto found = returns_.take(before, segment);
+  if (!found) return;
+  std::string members;
+  if (found->away) members = fmt::format(R"("away_ns":{})", found->away->count());
+  if (const auto item = ring_.waypoint_at(found->run_item, found->time)) {
+    members += fmt::format(R"({}"item":{})", members.empty() ? "" : ",", *item);
+  }
+  add_event(batch, {.stream = number_, .kind = EventKind::returned, .is_old = looks_back_},
+            found->time, times_.wall_time(found->time, batch.now), members);
 }
 
 void BoardWatch::put_restart(Batch& batch, Restart restart) {

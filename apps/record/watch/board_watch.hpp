@@ -10,7 +10,9 @@
 #include "apps/record/format/loss.hpp"
 #include "apps/record/format/messages.hpp"
 #include "apps/record/watch/batch.hpp"
+#include "apps/record/watch/returns.hpp"
 #include "apps/record/watch/ring_watch.hpp"
+#include "apps/record/watch/settled_excesses.hpp"
 #include "core/online/sliding_window.hpp"
 #include "ipc/board/reader.hpp"
 #include "ipc/law/follower.hpp"
@@ -65,7 +67,10 @@ class BoardWatch {
   void put_excesses(Batch& batch);
   void put_following(Batch& batch);
   void put_stops(Batch& batch);
+  void put_settled_excesses(Batch& batch, const std::vector<SettledExcess>& settled) const;
   void put_segments(Batch& batch);
+  void put_segment(Batch& batch, const ipc::SegmentCopy* before, const ipc::SegmentCopy& segment);
+  void put_return(Batch& batch, const ipc::SegmentCopy* before, const ipc::SegmentCopy& segment);
   void put_restart(Batch& batch, Restart restart);
   void try_restart(Batch& batch, const ipc::SegmentCopy& before);
   [[nodiscard]] bool wants_start(const Batch& batch) const noexcept;
@@ -81,6 +86,8 @@ class BoardWatch {
   core::WindowOptions options_;
   ipc::SettledSegments settled_;
   ipc::RunStarts starts_;
+  Returns returns_;
+  SettledExcesses excesses_;  ///< that have not settled
   ipc::Look looked_{};
   ipc::Summary summary_;   ///< of the last look
   ipc::SegmentCopy last_;  ///< the newest segment that has been read

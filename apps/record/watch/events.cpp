@@ -11,8 +11,9 @@ namespace splinecast::apps::record {
 namespace {
 
 constexpr std::array<std::string_view, kEventKinds> kNames{
-    "attached", "underrun", "deadline", "late",      "refusal", "takeover", "limit",
-    "finished", "retired",  "lost",     "following", "stopped", "released"};
+    "attached",  "underrun", "deadline", "late",     "refusal",
+    "takeover",  "limit",    "finished", "retired",  "lost",
+    "following", "stopped",  "released", "returned", "limit_settled"};
 constexpr std::array kTriggers{EventKind::underrun, EventKind::deadline, EventKind::late,
                                EventKind::refusal,  EventKind::takeover, EventKind::limit};
 
@@ -63,12 +64,20 @@ void add_loss(Batch& batch, std::uint32_t stream, const Loss& loss, Time time) {
 }
 
 std::string members_of(const LimitExcess& excess, const std::vector<std::string>& names) {
+  return fmt::format(R"("item":{},"refused":{},)", excess.item, excess.is_refused) +
+         place_of(excess, names) + values_of(excess);
+}
+
+std::string place_of(const LimitExcess& excess, const std::vector<std::string>& names) {
   const bool is_named = excess.dimension < names.size() && !names[excess.dimension].empty();
-  std::string text =
-      fmt::format(R"("item":{},"refused":{},"limit_kind":"{}","dimension":{},"at_ns":{},"value":)",
-                  excess.item, excess.is_refused, splinecast::to_string(excess.kind),
-                  json_text(is_named ? names[excess.dimension] : std::to_string(excess.dimension)),
-                  excess.time.count());
+  return fmt::format(
+      R"("limit_kind":"{}","dimension":{},"at_ns":{})", splinecast::to_string(excess.kind),
+      json_text(is_named ? names[excess.dimension] : std::to_string(excess.dimension)),
+      excess.time.count());
+}
+
+std::string values_of(const LimitExcess& excess) {
+  std::string text = R"(,"value":)";
   append_number(text, excess.value);
   text += R"(,"limit":)";
   append_number(text, excess.limit);

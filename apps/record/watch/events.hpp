@@ -27,8 +27,12 @@ void add_event(Batch& batch, const EventNote& event, Time time, Time own_time,
 /// Adds what was lost of a stream, as a message and, if it is anything, as an event.
 void add_loss(Batch& batch, std::uint32_t stream, const Loss& loss, Time time);
 
-/// Members of the JSON object of an event.
+/// Members of the JSON object of an event `limit`. `names`: of the dimensions.
 [[nodiscard]] std::string members_of(const LimitExcess& excess,
                                      const std::vector<std::string>& names);
+/// Those that say where a limit is exceeded, and those that say by how much.
+[[nodiscard]] std::string place_of(const LimitExcess& excess,
+                                   const std::vector<std::string>& names);
+[[nodiscard]] std::string values_of(const LimitExcess& excess);
 
 }  // namespace splinecast::apps::record

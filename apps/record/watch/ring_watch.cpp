@@ -61,10 +61,10 @@ bool RingWatch::look(Batch& batch) {
 /// Writes item_, which has number next_.
 void RingWatch::put_item(Batch& batch) {
   has_any_ = true;
-  if (item_.kind == ipc::ItemKind::waypoint) open_.push_back({next_, item_.time});
+  if (item_.kind == ipc::ItemKind::waypoint) open_.push_back({.number = next_, .time = item_.time});
   // The pieces of a plan are needed together, as long as its run lasts.
   const bool is_plan = item_.kind == ipc::ItemKind::rate && item_.place == 0;
-  if (is_plan) open_.push_back({next_, Time::max()});
+  if (is_plan) open_.push_back({.number = next_, .time = Time::max()});
   batch.add({.stream = number_,
              .kind = RecordKind::item,
              .number = next_,
@@ -88,6 +88,19 @@ std::optional<ipc::Word> RingWatch::first_after(ipc::Word run_item, Time time) {
   const ipc::Word first = open_.empty() ? next_ : open_.front().number;
   const bool is_known = complete_from_ <= run_item || first > complete_from_;
   return is_known ? std::optional(first) : std::nullopt;
+}
+
+void RingWatch::note_refused(ipc::Word item) noexcept {
+  const auto found = std::ranges::lower_bound(open_, item, {}, &OpenItem::number);
+  if (found != open_.end() && found->number == item) found->is_refused = true;
+}
+
+std::optional<ipc::Word> RingWatch::waypoint_at(ipc::Word run_item, Time time) const noexcept {
+  const auto first = std::ranges::lower_bound(open_, run_item, {}, &OpenItem::number);
+  const auto found = std::find_if(first, open_.end(), [time](const OpenItem& item) {
+    return item.time == time && !item.is_refused;
+  });
+  return found != open_.end() ? std::optional(found->number) : std::nullopt;
 }
 
 std::pair<ipc::Word, ipc::Word> RingWatch::owner() const noexcept {

@@ -49,6 +49,12 @@ class RingWatch {
   /// it with a lower run or an earlier time than before.
   [[nodiscard]] std::optional<ipc::Word> first_after(ipc::Word run_item, Time time);
 
+  /// The solver has refused an item.
+  void note_refused(ipc::Word item) noexcept;
+  /// The first waypoint at a time, from `run_item` on, that was not refused; empty if it is not
+  /// known.
+  [[nodiscard]] std::optional<ipc::Word> waypoint_at(ipc::Word run_item, Time time) const noexcept;
+
   /// The epoch and the process id of the present owner, from the region.
   [[nodiscard]] std::pair<ipc::Word, ipc::Word> owner() const noexcept;
 
@@ -56,6 +62,7 @@ class RingWatch {
   struct OpenItem {
     ipc::Word number;
     Time time;
+    bool is_refused = false;
   };
 
   void put_item(Batch& batch);

@@ -119,7 +119,8 @@ TEST_F(RecordDisk, AFullDiskIsReportedAndRecordingContinuesWhenItHasSpace) {
   SteppedStream source(stream.name(), {.capacity = kMany}, kMany);
   const std::string path = disk.file("run.mcap");
   { std::ofstream(disk.file("ballast")) << std::string(2 * kMiB, 'x'); }
-  Process recorder = start_recorder({stream.name(), "-o", path, "--compression", "none", "--json"});
+  Process recorder = start_recorder(
+      {stream.name(), "-o", path, "--compression", "none", "--states", "0", "--json"});
   recorder.await_message("'" + stream.name() + "': recording");
   const auto free = [&] { return std::filesystem::space(disk.folder()).available; };
   std::size_t count = feed(source, 0, 50, [&] { return free() < kMiB; });

@@ -221,6 +221,55 @@ TEST_F(RecordEvent, ATakeoverBeginsADump) {
   (void)solver.wait();
 }
 
+/// How many excesses of a stream have settled, of those that were executed or replaced in time.
+std::ptrdiff_t count_settled(const std::string& path, const std::string& stream, bool is_executed) {
+  return std::ranges::count_if(messages_of(path, "/" + stream + "/events"), [&](const auto& event) {
+    return event["event"] == "limit_settled" && event.contains("executed") &&
+           event["executed"] == is_executed;
+  });
+}
+
+TEST_F(RecordEvent, AnExcessOfTheSettledCurveIsExecuted) {
+  const TestStream stream;
+  const TestFolder folder;
+  const std::string path = folder.path("run.mcap");
+  SteppedStream source(stream.name(), {.limits = MotionLimits{.velocity = {1e-3}}});
+  source.append_until(100);
+  source.finish();
+  EXPECT_EQ(run({"record", stream.name(), "-o", path, "--until-finished"}).code, 0);
+  const auto exceeding = info(stream.name())["solver"]["exceeding"].get<std::ptrdiff_t>();
+  ASSERT_GT(exceeding, 0);
+  EXPECT_EQ(count_settled(path, stream.name(), true), exceeding);
+}
+
+TEST_F(RecordEvent, AnExcessThatWasReplacedInTimeIsNotExecuted) {
+  const TestStream stream;
+  SteadySource source(stream.name(), {.limits = MotionLimits{.velocity = {2}}});
+  const TestFolder folder;
+  const std::string path = folder.path("run.mcap");
+  Process recorder = start_recorder({stream.name(), "-o", path});
+  recorder.await_message("'" + stream.name() + "': recording");
+  settle(source);
+  // A far waypoint, which a stop replaces long before the curve is as fast as that.
+  const MonotonicClock clock;
+  const double far = 1e5;
+  EXPECT_EQ(source.producer.append(
+                {.time = clock.now() + std::chrono::minutes(10), .position = {&far, 1}}),
+            AppendStatus::accepted);
+  source.step(clock);
+  EXPECT_EQ(source.producer.replace_from(clock.now() + milliseconds(100), {}),
+            AppendStatus::accepted);
+  source.step(clock);
+  EXPECT_EQ(source.producer.finish(), AppendStatus::accepted);
+  EXPECT_TRUE(await([&] {
+    source.step(clock);
+    return count_settled(path, stream.name(), false) > 0;
+  }));
+  recorder.signal(SIGINT);
+  EXPECT_EQ(recorder.wait().code, 0);
+  EXPECT_EQ(count_settled(path, stream.name(), true), 0);
+}
+
 /// What occurred before the recorder came is recorded, but begins no dump.
 TEST_F(RecordEvent, AnEventOfBeforeBeginsNoDump) {
   const TestStream stream;

@@ -34,7 +34,7 @@ TEST_F(RecordFailure, AFileThatCannotGrowEndsWithAWholeChunkAndAnotherOneFollows
   // The file may have 2 MiB: more than the records of a second, with which another file begins.
   Process recorder("/usr/bin/prlimit",
                    {"--fsize=2097152", SPLINECAST_PROGRAM, "record", stream.name(), "-o",
-                    folder.path("run.mcap"), "--compression", "none", "--json"});
+                    folder.path("run.mcap"), "--compression", "none", "--states", "0", "--json"});
   recorder.await_message("'" + stream.name() + "': recording");
   std::size_t count = 0;
   std::thread source_thread([&] {

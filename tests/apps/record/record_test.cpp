@@ -199,7 +199,25 @@ TEST_F(Record, StatesAreThoseOfAReader) {
               SampleStatus::settled);
     EXPECT_EQ(bits(sampled["position"]["x"]), bits(state.position()[0]));
     EXPECT_EQ(bits(sampled["acceleration"]["x"]), bits(state.acceleration()[0]));
+    EXPECT_EQ(sampled["kind"], "spline");
   }
+}
+
+TEST_F(Record, StatesAreAtADefaultRateAndCanBeSwitchedOff) {
+  const TestFolder folder;
+  const TestStream stream;
+  SteppedStream source(stream.name());
+  source.append_until(50);
+  source.finish();
+  const auto count = [&](const std::string& name, std::vector<std::string> options) {
+    const std::string path = folder.path(name);
+    options.insert(options.begin(), {"record", stream.name(), "-o", path, "--until-finished"});
+    EXPECT_EQ(run(options).code, 0);
+    return messages_of(path, "/" + stream.name() + "/states").size();
+  };
+  EXPECT_EQ(count("default.mcap", {}), 49U);  // 0 to 480 ms every 10 ms
+  EXPECT_EQ(count("off.mcap", {"--states", "0"}), 0U);
+  EXPECT_EQ(run({"record", "arm", "-o", "run.mcap", "--states", "2e5"}).code, 2);
 }
 
 }  // namespace
