@@ -19,7 +19,7 @@
 namespace splinecast::apps {
 namespace {
 
-/// The stream that a topic names: `arm`, `/arm/waypoints` and the like.
+/// The stream that a topic names: `arm`, `/arm/waypoints`, `/arm/splinecast`.
 std::string stream_of(std::string_view topic) {
   if (topic.starts_with('/')) topic.remove_prefix(1);
   return std::string(topic.substr(0, topic.find('/')));

@@ -93,7 +93,7 @@ RecordedCurve read_curve(const std::string& path, const std::string& name) {
   return {std::move(stream.curve), std::move(law)};
 }
 
-/// The number of samples at a rate: those asked for, or up to the end of the curve.
+/// The number of samples at a rate: those requested, or up to the end of the curve.
 std::size_t count_of(const RecordedCurve& curve, const SampleOptions& options) {
   if (options.count > 0) return options.count;
   constexpr double kMost = 1e9;

@@ -38,7 +38,7 @@ void require_recording(const SampleOptions& options) {
   const std::string& file = options.names.front();
   if (record::is_recording(file)) return;
   throw InputError(
-      fmt::format("{}: it is no recording of 'record', as the first of two names must be",
+      fmt::format("{}: it is not a recording of 'record', as the first of two names must be",
                   ipc::printable(file)));
 }
 

@@ -32,7 +32,7 @@ struct ExecutedStream {
 /// streams of the file. The curve may be empty.
 [[nodiscard]] ExecutedStream read_executed(const std::string& path, const std::string& stream);
 
-/// The names of the streams in a recording that are no time laws, and had a solver.
+/// The names of the streams in a recording that had a solver, without time laws.
 [[nodiscard]] std::vector<std::string> executed_streams(const std::string& path);
 
 /// The time law of a stream, if the file has it: that with the id which the stream names, and not

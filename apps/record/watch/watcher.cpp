@@ -6,13 +6,12 @@
 
 #include "ipc/memory/names.hpp"
 #include "splinecast/errors.hpp"
-#include "splinecast/streams.hpp"
 
 namespace splinecast::apps::record {
 namespace {
 
 /// Interval of looks for files that come or go, and for processes that take over.
-constexpr Time kLookAround = std::chrono::milliseconds(20);
+constexpr Time kLookAround = std::chrono::milliseconds(5);
 constexpr Time kLookAtOwners = std::chrono::milliseconds(100);
 /// A name that is gone is forgotten after this time.
 constexpr Time kForget = std::chrono::seconds(2);
@@ -77,8 +76,10 @@ Time Watcher::next_pause() const noexcept {
 }
 
 void Watcher::look_around(Batch& batch) {
+  regions_.poll();
   // A ring or a board can appear only with a new file.
-  if (!folder_.has_changed() && !has_detached_) return;
+  if (regions_.version() == regions_seen_ && !has_detached_) return;
+  regions_seen_ = regions_.version();
   has_detached_ = false;
   find_streams(batch.now);
   const bool were_there = !std::exchange(has_looked_around_, true);
@@ -100,7 +101,7 @@ void Watcher::forget_gone(Time now) {
 
 void Watcher::find_streams(Time now) {
   if (patterns_.empty()) return;
-  for (const std::string& stream : stream_names()) {
+  for (const std::string& stream : regions_.streams()) {
     if (by_name_.contains(stream)) continue;
     const bool is_wanted = std::ranges::any_of(
         patterns_, [&](const std::string& pattern) { return ipc::matches(pattern, stream); });

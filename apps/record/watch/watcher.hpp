@@ -12,8 +12,8 @@
 #include "apps/record/watch/batch.hpp"
 #include "apps/record/watch/clocks.hpp"
 #include "apps/record/watch/stream_watch.hpp"
-#include "ipc/memory/folder_watch.hpp"
 #include "ipc/memory/poll_schedule.hpp"
+#include "ipc/memory/region_watch.hpp"
 #include "splinecast/options.hpp"
 
 namespace splinecast::apps::record {
@@ -75,7 +75,8 @@ class Watcher {
   Trust trust_;
   Notify notify_;
   WallClock clock_;
-  ipc::FolderWatch folder_;
+  ipc::RegionWatch regions_;
+  ipc::Word regions_seen_ = 0;  ///< version of the regions when the streams were attached last
   std::vector<std::unique_ptr<Member>> members_;  ///< by number
   std::uint32_t last_number_ = 0;
   std::map<std::string, Member*, std::less<>> by_name_;

@@ -295,7 +295,7 @@ TEST_F(ExecutedInVerbs, WhatBelongsToWaypointsNeedsThem) {
 TEST_F(ExecutedInVerbs, NamesThatAreNotThereAreRefusedWithThoseThatAre) {
   expect_error({"sample", path(), "other", "--rate", "1"}, 2, "it has '" + name() + "'");
   expect_error({"fit", path(), "--topic", "other", "--dt", "1"}, 2, "it has '" + name() + "'");
-  expect_error({"sample", name(), path(), "--rate", "1"}, 2, "it is no recording of 'record'");
+  expect_error({"sample", name(), path(), "--rate", "1"}, 2, "it is not a recording of 'record'");
   expect_error({"sample", path(), name(), "--rate", "1", "--wait", "1"}, 2, "--wait");
   expect_error({"sample", name(), "--rate", "1"}, 2, "--rate: needs --count");
   expect_error({"sample", "a", "b", "c", "--rate", "1"}, 2, "two are a recording and a stream");
