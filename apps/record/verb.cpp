@@ -90,7 +90,7 @@ void add_files(Command& verb, RecordOptions& options) {
                 .hz = is_off ? 0 : number_within("--states", text, kStatesRange)};
           },
           "Rate of the states, which are the settled curve, in Hz, 1e-3 to 1e5; 0: none (default "
-          "100)")
+          "20)")
       .type("HZ");
   verb.option(
           "--max-size",

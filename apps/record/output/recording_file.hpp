@@ -21,7 +21,7 @@
 namespace splinecast::apps::record {
 
 /// The rate at which states are recorded unless another one is given.
-inline constexpr SamplingRate kStates{.hz = 100, .most = 1000};
+inline constexpr SamplingRate kStates{.hz = 20, .most = 1000};
 
 struct FileOptions {
   mcap::Compression compression = mcap::Compression::zstd;
