@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "apps/process/exit_codes.hpp"
+#include "apps/process/signals.hpp"
 #include "apps/record/format/options.hpp"
 #include "ipc/memory/names.hpp"
 
@@ -75,6 +76,8 @@ bool RecordingFile::write_bytes(std::span<const std::byte> bytes) {
       return false;
     }
     bytes = bytes.subspan(static_cast<std::size_t>(count));
+    // After a signal what waits is still written: its size has a bound, and the disk may be slow.
+    extend_shutdown();
   }
   return true;
 }
