@@ -77,9 +77,10 @@ CheckReport check_executed(const CheckOptions& options) {
   LimitFile file;
   if (!options.limits.file.empty()) file = read_limit_file(options.limits.file);
   MotionLimits limits = executed.limits();
-  if (options.limits.any())
+  if (options.limits.any()) {
     limits =
         limits_of(options.limits, file, executed.stream.file, executed.names(), executed.kinds());
+  }
   if (limits.empty()) {
     throw InputError(
         fmt::format("{}: stream '{}' has no limits: give them with --limits, "

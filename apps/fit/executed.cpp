@@ -82,10 +82,8 @@ std::vector<ReportSpan> spans_of(const record::ExecutedStream& stream) {
   std::vector<ReportSpan> spans;
   const auto add_span = [&](Time from, Time to, std::string_view kind) {
     const bool continues = !spans.empty() && spans.back().to == from && spans.back().kind == kind;
-    if (continues)
-      spans.back().to = to;
-    else
-      spans.push_back({.from = from, .to = to, .kind = std::string(kind)});
+    if (!continues) spans.push_back({.from = from, .to = to, .kind = std::string(kind)});
+    spans.back().to = to;
   };
   const ipc::SegmentCopy* before = nullptr;
   for (const ipc::SegmentCopy& segment : stream.curve.segments()) {
@@ -110,6 +108,10 @@ std::vector<ReportMark> marks_of(const record::ExecutedStream& stream, const std
   std::vector<ReportMark> marks;
   for (auto& event : record::read_events(path, stream.curve.options().stream)) {
     marks.push_back({.time = event.time, .text = std::move(event.text)});
+  }
+  if (marks.size() == record::kMostEvents) {
+    marks.push_back({.time = marks.back().time,
+                     .text = fmt::format("only the first {} events are listed", marks.size())});
   }
   for (const record::SentWaypoint& sent : stream.waypoints) {
     if (sent.is_refused || sent.late <= kLeastLate) continue;

@@ -35,8 +35,9 @@ struct Executed {
   [[nodiscard]] MotionLimits limits() const;
 };
 
-/// Reads the curve of the stream of a topic, or of the only stream, and says what it is unless
-/// `table.quiet`. Throws InputError if there is none.
+/// Reads the curve of the stream that `table.topic` names, or of the only stream of the file.
+/// Prints which curve was taken, if not `table.quiet`. Throws InputError if the file does not have
+/// it.
 [[nodiscard]] Executed read_executed_curve(const std::string& file, const TableOptions& table);
 
 /// What a report shows of it: the parts, the waypoints that it meets and those that it does not,

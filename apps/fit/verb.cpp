@@ -52,8 +52,12 @@ void require_inside(const std::vector<Time>& times, std::span<const PiecewisePol
   }
 }
 
-void write_report_file(const Report& report, const std::string& file) {
-  Output output(file);
+/// Writes the report, with the units of `--unit` if there are any.
+void write_report_to_file(Report report, const FitOptions& options) {
+  for (std::size_t d = 0; d < report.units.size() && !options.units.empty(); ++d) {
+    report.units[d] = options.units[std::min(d, options.units.size() - 1)];
+  }
+  Output output(options.report);
   write_report(report, output);
   output.close();
 }
@@ -68,11 +72,10 @@ void write_report_of(const WaypointTable& table, std::vector<ReportCurve> curves
                 .curves = std::move(curves)};
   for (std::size_t d = 0; d < table.dimensions(); ++d) {
     auto [name, unit] = name_and_unit(table.names[d]);
-    if (!options.units.empty()) unit = options.units[std::min(d, options.units.size() - 1)];
     report.names.push_back(std::move(name));
     report.units.push_back(std::move(unit));
   }
-  write_report_file(report, options.report);
+  write_report_to_file(std::move(report), options);
 }
 
 /// Throws InputError if --dt makes more than 1e9 samples.
@@ -121,11 +124,7 @@ int run_executed(const FitOptions& options) {
   require_inside(at, executed.parts, options.at);
   if (options.dt) require_samples(executed.parts, *options.dt);
   if (!options.report.empty()) {
-    Report report = report_of(executed, options.file);
-    for (std::size_t d = 0; d < report.units.size() && !options.units.empty(); ++d) {
-      report.units[d] = options.units[std::min(d, options.units.size() - 1)];
-    }
-    write_report_file(report, options.report);
+    write_report_to_file(report_of(executed, options.file), options);
   }
   if (only_reports(options)) return kOk;
   Output output(options.output);

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -31,10 +29,8 @@ class Sampling {
         // With --rate others can follow the file while it grows.
         output_(options.output, options.at.empty() ? Writing::growing : Writing::whole),
         state_(reader_.dimensions()),
-        none_(reader_.dimensions()),
-        writer_(output_, reader_.dimensions(), reader_.kinds(), "status") {
-    fill_with_nan(none_);
-  }
+        none_(no_values(reader_.dimensions())),
+        writer_(output_, reader_.dimensions(), reader_.kinds(), "status") {}
 
   int run() {
     const bool is_complete = write_all();
@@ -52,21 +48,10 @@ class Sampling {
     return is_live(reader_.clock()) ? follow_live() : step_through_recording();
   }
 
-  static void fill_with_nan(State& state) {
-    const StateRef all = state.ref();
-    for (const auto part : {all.position, all.velocity, all.acceleration, all.jerk}) {
-      std::ranges::fill(part, std::numeric_limits<double>::quiet_NaN());
-    }
-  }
-
-  [[nodiscard]] Time period_times(std::size_t k) const {
-    return Time(std::llround(static_cast<double>(k) * 1e9 / options_.rate));
-  }
-
   bool follow_live() {
     const Time start = clock_.now();
     for (std::size_t k = 0; k < options_.count; ++k) {
-      const Time t = start + period_times(k);
+      const Time t = start + period_times(k, options_.rate);
       if (clock_.now() < t) output_.flush();  // others can read each line before the next one
       if (!sleep_until(t) || !write(t)) return false;
     }
@@ -76,7 +61,7 @@ class Sampling {
   bool step_through_recording() {
     const Time start = first_knot();
     for (std::size_t k = 0; k < options_.count; ++k) {
-      if (!write(start + period_times(k))) return false;
+      if (!write(start + period_times(k, options_.rate))) return false;
     }
     return true;
   }

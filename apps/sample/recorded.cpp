@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -110,11 +109,7 @@ int sample_recording(const SampleOptions& options, const std::vector<Time>& time
   Output output(options.output);
   SampleWriter writer(output, curve.dimensions(), curve.kinds(), "status,kind");
   State state(curve.dimensions());
-  State none(curve.dimensions());
-  for (const auto part :
-       {none.ref().position, none.ref().velocity, none.ref().acceleration, none.ref().jerk}) {
-    std::ranges::fill(part, std::numeric_limits<double>::quiet_NaN());
-  }
+  const State none = no_values(curve.dimensions());
   const auto write = [&](Time t) {
     if (stop_requested()) throw Interrupted("interrupted");
     const ExecutedSample found = curve.sample(t, state.ref());
@@ -126,9 +121,7 @@ int sample_recording(const SampleOptions& options, const std::vector<Time>& time
   for (const Time t : times) write(t);
   const std::size_t count = options.at.empty() ? count_of(curve, options) : 0;
   const Time begin = curve.begin();
-  for (std::size_t k = 0; k < count; ++k) {
-    write(begin + Time(std::llround(static_cast<double>(k) * 1e9 / options.rate)));
-  }
+  for (std::size_t k = 0; k < count; ++k) write(begin + period_times(k, options.rate));
   output.close();
   return kOk;
 }

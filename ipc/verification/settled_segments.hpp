@@ -48,8 +48,8 @@ class SettledSegments {
   /// Whether the last look left settled segments because of `final_until`.
   [[nodiscard]] bool waits() const noexcept { return waits_; }
 
-  /// The part that has settled of the next segment, which has not settled to its end; nothing if
-  /// there is none. Without the acceleration step. Allocates.
+  /// The next segment, if a part of it has settled, but not its end. Has no acceleration step.
+  /// Allocates.
   [[nodiscard]] std::optional<OpenSegment> open() const;
 
   /// The summary of the board at the last look.

@@ -35,7 +35,6 @@ class StreamMessages {
     }
   }
 
-  [[nodiscard]] const std::optional<StreamOptions>& options() const noexcept { return options_; }
   [[nodiscard]] std::size_t lives() const noexcept { return lives_; }
   [[nodiscard]] std::optional<ExecutedCurve>& found() noexcept { return curve_; }
 
@@ -60,8 +59,7 @@ class StreamMessages {
   }
 
   void take_options(std::span<const std::byte> body) {
-    StreamOptions options = parse_options(
-        {reinterpret_cast<const char*>(body.data()), body.size()});  // NOLINT(*-reinterpret-cast)
+    StreamOptions options = parse_options(body);
     const bool is_new = !options_ || options_->waypoints.stream_id != options.waypoints.stream_id;
     if (is_new) waypoints_.clear();
     if (options.spline) {
@@ -139,9 +137,7 @@ std::vector<std::string> executed_streams(const std::string& path) {
   std::map<std::string, bool, std::less<>> streams;  // whether they have a curve
   (void)read_exact(path, {}, [&](std::string_view name, const mcap::Message& message) {
     if (kind_of(message.data) != RecordKind::options) return;
-    const auto body = message.data.subspan(1);
-    const StreamOptions options = parse_options(
-        {reinterpret_cast<const char*>(body.data()), body.size()});  // NOLINT(*-reinterpret-cast)
+    const StreamOptions options = parse_options(message.data.subspan(1));
     streams[std::string(name)] = options.spline && options.waypoints.is_law == 0;
   });
   std::vector<std::string> names;

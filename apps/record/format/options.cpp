@@ -287,6 +287,11 @@ StreamOptions parse_options(std::string_view text) {
   }
 }
 
+StreamOptions parse_options(std::span<const std::byte> body) {
+  return parse_options(std::string_view(reinterpret_cast<const char*>(body.data()),  // NOLINT
+                                        body.size()));
+}
+
 std::vector<std::string> names_in_json(const RegionHeader& header) {
   std::vector<std::string> names = ipc::dimension_names(header);
   const std::set<std::string> distinct(names.begin(), names.end());

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +34,8 @@ struct StreamOptions {
 /// Reads what to_json writes, for the layout of this program. Throws BadMessage, naming the field,
 /// for another format, a missing field or a value that no stream has.
 [[nodiscard]] StreamOptions parse_options(std::string_view text);
+/// The same for the body of a message.
+[[nodiscard]] StreamOptions parse_options(std::span<const std::byte> body);
 
 /// The names of a stream's dimensions in the JSON channels: those of the header, or their indices
 /// if a name is empty or occurs twice.

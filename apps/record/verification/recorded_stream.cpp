@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
 #include "ipc/options/curve.hpp"
@@ -47,9 +46,7 @@ void RecordedStream::finish() {
 
 /// Begins another stream, unless it is the same one whose solver has come.
 void RecordedStream::take_options(std::span<const std::byte> body) {
-  const std::string_view text(reinterpret_cast<const char*>(body.data()),  // NOLINT
-                              body.size());
-  StreamOptions options = parse_options(text);
+  StreamOptions options = parse_options(body);
   const bool is_same = options_ && !options_->spline && part_ == std::nullopt &&
                        options_->waypoints.stream_id == options.waypoints.stream_id &&
                        options_->waypoints.dimensions == options.waypoints.dimensions;

@@ -3,11 +3,9 @@
 #include <signal.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "apps/record/executed/executed_file.hpp"
@@ -202,7 +200,6 @@ class ExecutedUnderALaw : public Rate {
       EXPECT_TRUE(await_rate(std::stod(wanted)));
     }
     std::vector<testing::LiveRow> rows = reader.stop();
-    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // what was sampled has settled
     recorder.signal(SIGINT);
     (void)recorder.wait();
     return rows;

@@ -24,7 +24,7 @@ LiveReader::LiveReader(const std::string& stream)
           if (has_values(status) && !may_change) {
             rows_.push_back({now, status, {state.values().begin(), state.values().end()}});
           }
-          std::this_thread::sleep_for(std::chrono::milliseconds(1));
+          std::this_thread::sleep_for(std::chrono::milliseconds(1));  // a rate, not a wait
         }
       }) {}
 

@@ -146,7 +146,7 @@ Result run_long_recording(const CampaignOptions& options) {
   recording.run();
   return make_result(options, {5},
                      "long recording: one recorder of many names that come and go, 100 at a time; "
-                     "what it has recorded and lost is what was sent",
+                     "the items recorded and lost are those sent",
                      std::max<std::uint64_t>(recording.sent(), 1), "items", recording.found(),
                      recording.measured(), to_seconds(clock.now() - begin));
 }
