@@ -146,8 +146,10 @@ void Files::write_account(const Accounts::Key& stream, Time now, bool is_needed)
 
 void Files::write_accounts(Time now) {
   if (!file_ || file_->failed()) return;
-  for (const auto& stream : accounts_.all_changed()) write_account(stream, now, false);
-  if (!file_->has_open_chunk()) note_whole_chunks();
+  for (const auto& stream : accounts_.all_changed()) {
+    write_account(stream, now, false);
+    if (!file_->has_open_chunk()) note_whole_chunks();
+  }
 }
 
 void Files::say_losses() {
@@ -271,6 +273,8 @@ void Files::fail(const std::string& why, Time now) {
 /// this one lacks.
 bool Files::close_file(Time now) {
   write_accounts(now);
+  end_chunk(now);  // what is in a whole chunk is recorded, also if the summary cannot be written
+  if (!file_) return false;
   file_->finish();
   if (!file_->why().empty()) {
     fail(file_->why(), now);
@@ -350,8 +354,9 @@ void Files::check_file(Time now) {
   next_check_ = now + kCheck;
   if (file_->is_in_place()) return;
   write_accounts(now);
-  file_->finish();
+  file_->end_chunk();
   note_whole_chunks();
+  file_->finish();
   own_.pop_back();  // another file may have its name
   fail("it was moved or removed", now);
 }
