@@ -28,6 +28,7 @@ namespace {
 /// writer.
 constexpr Time kBatch = std::chrono::milliseconds(50);
 constexpr std::size_t kBatchBytes = std::size_t{256} << 10U;
+constexpr Time kLookAtTriggers = std::chrono::milliseconds(50);
 
 class Recorder {
  public:
@@ -88,7 +89,7 @@ class Recorder {
   void look_at_triggers() {
     const Time now = clock_.now();
     if (now < next_trigger_) return;
-    next_trigger_ = now + std::chrono::milliseconds(10);
+    next_trigger_ = now + kLookAtTriggers;
     answer_triggers();
     if (!triggers_.poll()) return;
     put(now);

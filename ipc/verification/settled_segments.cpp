@@ -13,7 +13,8 @@ constexpr int kTries = 16;
 SettledSegments::SettledSegments(const KnotBoardReader& board, bool is_held_before_start)
     : board_(&board),
       is_held_before_start_(is_held_before_start),
-      copy_(board.dimensions(), board.smooths()),
+      copies_{BoardSegment(board.dimensions(), board.smooths()),
+              BoardSegment(board.dimensions(), board.smooths())},
       start_(board.dimensions()),
       end_(board.dimensions()) {}
 
@@ -37,32 +38,34 @@ bool SettledSegments::take(const Look& look, Time final_until) {
   if (summary_.newest == 0) return true;
   Word number = std::max(next_, summary_.first);
   while (number <= summary_.newest) {
-    const BoardSegment::Taken taken = copy_.take(*board_, summary_, number);
+    const BoardSegment& before = copy();
+    last_ = 1 - last_;
+    const BoardSegment::Taken taken = copies_[last_].take(*board_, summary_, number, &before);
     if (taken == BoardSegment::Taken::torn) return false;
     if (taken == BoardSegment::Taken::none) break;  // the end of a finished curve
     until_ = std::min(summary_.settled_until, final_until);
-    is_open_ = !summary_.finished && copy_.right() > until_;
-    waits_ = is_open_ && copy_.right() <= summary_.settled_until;
+    is_open_ = !summary_.finished && copy().right() > until_;
+    waits_ = is_open_ && copy().right() <= summary_.settled_until;
     if (is_open_) break;
     keep();
-    if (copy_.is_last(summary_)) break;
-    number = copy_.next();
+    if (copy().is_last(summary_)) break;
+    number = copy().next();
   }
   return true;
 }
 
 std::optional<OpenSegment> SettledSegments::open() const {
-  if (!is_open_ || copy_.left() >= until_) return std::nullopt;
+  if (!is_open_ || copy().left() >= until_) return std::nullopt;
   OpenSegment open{.until = until_, .segment = {}};
-  copy_.copy_to(open.segment);
+  copy().copy_to(open.segment);
   return open;
 }
 
 /// Keeps the segment that has been copied, with its acceleration step if the one before is known.
 void SettledSegments::keep() {
   SegmentCopy segment;
-  copy_.copy_to(segment);
-  copy_.write_accelerations(start_, end_);
+  copy().copy_to(segment);
+  copy().write_accelerations(start_, end_);
   if (next_ == segment.number && segment.number > 1) {
     segment.acceleration_step.resize(start_.size());
     for (std::size_t d = 0; d < start_.size(); ++d) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -58,19 +60,22 @@ class SettledSegments {
  private:
   [[nodiscard]] bool take(const Look& look, Time final_until);
   void keep();
+  [[nodiscard]] const BoardSegment& copy() const noexcept { return copies_[last_]; }
 
   const KnotBoardReader* board_;
   bool is_held_before_start_;
   Summary summary_;
   Look seen_;  ///< of the last look that was complete
-  BoardSegment copy_;
+  /// The last two segments that were copied; they share a knot. The newest one is at last_.
+  std::array<BoardSegment, 2> copies_;
+  std::size_t last_ = 0;
   std::vector<double> start_;    ///< scratch
   std::vector<double> end_;      ///< scratch
   std::vector<double> arrival_;  ///< acceleration at the end of the segment kept last
   std::vector<SegmentCopy> segments_;
   Word next_ = 1;
   bool waits_ = false;
-  bool is_open_ = false;  ///< copy_ is the next segment, which has not settled to its end
+  bool is_open_ = false;  ///< copy() is the next segment, which has not settled to its end
   Time until_{};          ///< then the time up to which it has
 };
 

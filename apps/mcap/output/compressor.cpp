@@ -11,8 +11,9 @@
 namespace splinecast::apps::mcap {
 namespace {
 
-/// Fast levels: a recorder must not slow down what it records.
-constexpr int kZstdLevel = 1;
+/// Fast levels: a recorder must not slow down what it records. Level 1 of zstd makes files that are
+/// an eighth smaller, in twice the time.
+constexpr int kZstdLevel = -1;
 constexpr LZ4F_preferences_t kLz4Default{};
 
 }  // namespace

@@ -14,8 +14,12 @@ void MessageIndexes::add(std::uint16_t channel, Time log_time, std::uint64_t off
   entries.push_back({time, offset});
 }
 
-void MessageIndexes::clear() noexcept {
+void MessageIndexes::clear() {
+  for (const std::uint16_t channel : channels_before_) {
+    if (entries_[channel].empty()) std::vector<Entry>().swap(entries_[channel]);
+  }
   for (const std::uint16_t channel : channels_) entries_[channel].clear();
+  channels_before_ = channels_;
   channels_.clear();
   start_time_ = 0;
   end_time_ = 0;

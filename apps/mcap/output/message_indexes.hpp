@@ -8,7 +8,8 @@
 
 namespace splinecast::apps::mcap {
 
-/// Where the messages of a chunk are, channel by channel. Reuses its memory.
+/// Where the messages of a chunk are, channel by channel. Reuses the memory of the chunk before,
+/// and frees that of channels which have no messages any more.
 class MessageIndexes {
  public:
   /// Log time in ns, and offset of the message in the uncompressed records: as in a file.
@@ -18,7 +19,7 @@ class MessageIndexes {
   };
 
   void add(std::uint16_t channel, Time log_time, std::uint64_t offset);
-  void clear() noexcept;
+  void clear();
 
   /// The channels with messages, in the order of their first message.
   [[nodiscard]] const std::vector<std::uint16_t>& channels() const noexcept { return channels_; }
@@ -31,7 +32,8 @@ class MessageIndexes {
 
  private:
   std::vector<std::uint16_t> channels_;
-  std::vector<std::vector<Entry>> entries_;  ///< by the channel's number
+  std::vector<std::uint16_t> channels_before_;  ///< those of the chunk before
+  std::vector<std::vector<Entry>> entries_;     ///< by the channel's number
   std::uint64_t start_time_ = 0;
   std::uint64_t end_time_ = 0;
 };

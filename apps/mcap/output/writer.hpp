@@ -42,8 +42,8 @@ class Writer {
                             const std::map<std::string, std::string>& metadata = {});
 
   /// Adds a message to the open chunk, and ends the chunk if it is large enough. A negative time
-  /// becomes 0, because a file has no negative times. Allocates nothing once the memory of earlier
-  /// chunks suffices. Throws std::out_of_range if there is no such channel.
+  /// becomes 0, because a file has no negative times. Allocates nothing once the memory of the
+  /// chunk before suffices. Throws std::out_of_range if there is no such channel.
   void write(std::uint16_t channel, std::uint32_t sequence, Time log_time, Time publish_time,
              std::span<const std::byte> data);
 

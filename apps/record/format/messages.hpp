@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "apps/record/format/bytes.hpp"
@@ -42,6 +43,8 @@ struct NumberedItem {
 [[nodiscard]] Bytes encode(const ipc::SegmentCopy& segment);
 [[nodiscard]] ipc::SegmentCopy decode_segment(std::span<const std::byte> bytes,
                                               std::size_t dimensions);
+/// The left and the right end of a segment, without the rest of its message.
+[[nodiscard]] std::pair<Time, Time> times_of_segment(std::span<const std::byte> bytes);
 
 /// `spline`, `entry`, `stop`, `hold` or `slowed`.
 [[nodiscard]] std::string_view to_string(SegmentKind kind) noexcept;

@@ -159,6 +159,14 @@ ipc::SegmentCopy decode_segment(std::span<const std::byte> bytes, std::size_t di
   return segment;
 }
 
+std::pair<Time, Time> times_of_segment(std::span<const std::byte> bytes) {
+  ByteReader in(bytes);
+  (void)in.take<ipc::Word>();
+  (void)in.take<ipc::Word>();
+  const Time left = in.take_time();
+  return {left, in.take_time()};
+}
+
 Bytes encode(const Restart& restart) {
   Bytes bytes;
   bytes.push_back(static_cast<std::byte>(RecordKind::restart));

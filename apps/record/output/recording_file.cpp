@@ -101,6 +101,7 @@ std::uint16_t RecordingFile::add_channel(const std::string& topic, std::string_v
   if (const auto found = channels_.find(key); found != channels_.end()) return found->second;
   const std::uint16_t channel = writer_->add_channel(id, topic, is_json ? kJson : "splinecast", {});
   channels_.emplace(key, channel);
+  sequences_.resize(channel + std::size_t{1});
   return channel;
 }
 
@@ -117,9 +118,6 @@ void RecordingFile::begin_stream(const Record& record) {
     stream.states = add_channel(topic + "/states", "splinecast.State", stream.json.state_schema());
   }
   stream.exact = add_channel(topic + "/splinecast", "", "");
-  if (const auto known = streams_.find(record.stream); known != streams_.end()) {
-    stream.sequence = std::move(known->second.sequence);
-  }
   writer_->add_metadata("splinecast:" + options.stream, metadata_of(text));
   streams_.insert_or_assign(record.stream, std::move(stream));
 }
@@ -135,37 +133,38 @@ void RecordingFile::write_messages(const Record& record) {
   if (found == streams_.end()) throw BadMessage("its stream has no options");
   Stream& stream = found->second;
   if (record.kind == RecordKind::event) {
-    return put(stream, stream.events, record.own_time, record.seen, record.bytes);
+    return put(stream.events, record.own_time, record.seen, record.bytes);
   }
-  put(stream, stream.exact, record.own_time, record.seen, record.bytes);
+  put(stream.exact, record.own_time, record.seen, record.bytes);
   const auto body = std::span<const std::byte>(record.bytes).subspan(1);
   if (record.kind == RecordKind::item) {
     const NumberedItem item = decode_item(body, stream.dimensions);
-    put(stream, stream.waypoints, record.own_time, record.seen, stream.json.waypoint(item));
+    put(stream.waypoints, record.own_time, record.seen, stream.json.waypoint(item));
   } else if (record.kind == RecordKind::segment && stream.sampled) {
     put_states(stream, record);
   }
 }
 
 void RecordingFile::put_states(Stream& stream, const Record& record) {
-  const auto segment =
-      decode_segment(std::span<const std::byte>(record.bytes).subspan(1), stream.dimensions);
+  const auto body = std::span<const std::byte>(record.bytes).subspan(1);
+  const auto [left, right] = times_of_segment(body);
+  if (!stream.sampled->has_any(left, right)) return;
+  const ipc::SegmentCopy segment = decode_segment(body, stream.dimensions);
   stream.sampled->sample(segment, [&](Time time, const State& state) {
     const double part = to_seconds(time - segment.left) / to_seconds(segment.right - segment.left);
     const Time own =
         record.own_time + from_seconds(part * to_seconds(record.own_end - record.own_time));
-    put(stream, stream.states, own, record.seen, stream.json.state(time, segment.kind, state));
+    put(stream.states, own, record.seen, stream.json.state(time, segment.kind, state));
   });
 }
 
-void RecordingFile::put(Stream& stream, std::uint16_t channel, Time own_time, Time seen,
+void RecordingFile::put(std::uint16_t channel, Time own_time, Time seen,
                         std::span<const std::byte> data) {
-  writer_->write(channel, stream.sequence[channel]++, seen, own_time, data);
+  writer_->write(channel, sequences_.at(channel)++, seen, own_time, data);
 }
 
-void RecordingFile::put(Stream& stream, std::uint16_t channel, Time own_time, Time seen,
-                        std::string_view text) {
-  put(stream, channel, own_time, seen, std::as_bytes(std::span(text)));
+void RecordingFile::put(std::uint16_t channel, Time own_time, Time seen, std::string_view text) {
+  put(channel, own_time, seen, std::as_bytes(std::span(text)));
 }
 
 void RecordingFile::end_chunk() { writer_->end_chunk(); }

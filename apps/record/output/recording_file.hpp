@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "apps/mcap/output/writer.hpp"
 #include "apps/record/format/json.hpp"
@@ -87,7 +88,6 @@ class RecordingFile {
     std::size_t dimensions;
     JsonMessages json;
     std::optional<States> sampled;
-    std::map<std::uint16_t, std::uint32_t> sequence{};
   };
 
   bool write_bytes(std::span<const std::byte> bytes);
@@ -96,9 +96,8 @@ class RecordingFile {
   void begin_stream(const Record& record);
   std::uint16_t add_channel(const std::string& topic, std::string_view schema,
                             const std::string& text);
-  void put(Stream& stream, std::uint16_t channel, Time own_time, Time seen,
-           std::span<const std::byte> data);
-  void put(Stream& stream, std::uint16_t channel, Time own_time, Time seen, std::string_view text);
+  void put(std::uint16_t channel, Time own_time, Time seen, std::span<const std::byte> data);
+  void put(std::uint16_t channel, Time own_time, Time seen, std::string_view text);
   void put_states(Stream& stream, const Record& record);
 
   std::string path_;
@@ -110,6 +109,7 @@ class RecordingFile {
   std::map<std::uint32_t, Stream> streams_;
   std::map<std::string, std::uint16_t, std::less<>> schemas_;  ///< by name and text
   std::map<std::string, std::uint16_t> channels_;              ///< by topic and schema
+  std::vector<std::uint32_t> sequences_;  ///< the next sequence number of each channel
 };
 
 }  // namespace splinecast::apps::record

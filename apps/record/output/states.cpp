@@ -13,8 +13,8 @@ States::States(const ipc::RegionHeader& header, const SamplingRate& rate)
       most_(rate.most),
       state_(header.dimensions) {}
 
-Time States::step_of(const ipc::SegmentCopy& segment) const noexcept {
-  const std::int64_t intervals = (segment.right - segment.left) / interval_;
+Time States::step_of(Time left, Time right) const noexcept {
+  const std::int64_t intervals = (right - left) / interval_;
   return interval_ * (1 + intervals / most_);
 }
 

@@ -25,10 +25,15 @@ class States {
  public:
   States(const ipc::RegionHeader& header, const SamplingRate& rate);
 
+  /// Whether a segment with these ends has any sample.
+  [[nodiscard]] bool has_any(Time left, Time right) const noexcept {
+    return first_from(left, step_of(left, right)) < right;
+  }
+
   /// Samples within [left, right) of the next settled segment: calls take(Time, const State&).
   template <typename Take>
   void sample(const ipc::SegmentCopy& segment, const Take& take) {
-    const Time step = step_of(segment);
+    const Time step = step_of(segment.left, segment.right);
     for (Time time = first_from(segment.left, step); time < segment.right; time += step) {
       core::evaluate(segment.order, segment.coefficients, to_seconds(time - segment.left),
                      state_.ref());
@@ -38,7 +43,7 @@ class States {
   }
 
  private:
-  [[nodiscard]] Time step_of(const ipc::SegmentCopy& segment) const noexcept;
+  [[nodiscard]] Time step_of(Time left, Time right) const noexcept;
   /// The first multiple of a step at or after a time.
   [[nodiscard]] static Time first_from(Time time, Time step) noexcept;
 

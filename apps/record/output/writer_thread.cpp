@@ -41,7 +41,9 @@ bool WriterThread::has_room(const Batch& batch) {
 
 void WriterThread::put(Batch& batch) {
   const std::size_t bytes = batch.bytes;
-  push(std::exchange(batch, Batch{.now = batch.now}), bytes);
+  Batch next{.now = batch.now};
+  next.records.reserve(batch.records.size());
+  push(std::exchange(batch, std::move(next)), bytes);
 }
 
 void WriterThread::trigger() { push(Trigger{}, 0); }

@@ -140,6 +140,7 @@ void BoardWatch::put_counts(Batch& batch) {
 
 void BoardWatch::put_excesses(Batch& batch) {
   const ipc::Summary& now = settled_.summary();
+  if (now.exceeding == summary_.exceeding) return;
   const ipc::Word kept = std::min<ipc::Word>(now.exceeding, ipc::kExcessesKept);
   const auto names = ipc::dimension_names(board_.header);
   const ipc::Word first = std::max(summary_.exceeding, now.exceeding - kept);

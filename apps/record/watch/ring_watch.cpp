@@ -11,6 +11,9 @@
 namespace splinecast::apps::record {
 namespace {
 
+/// A ring is filled fast if a look finds more than this part of it.
+constexpr ipc::Word kFast = 16;
+
 /// The oldest item that a ring may still have.
 ipc::Word oldest_of(const ipc::WaypointRingReader& ring) noexcept {
   const ipc::Word written = ring.written();
@@ -40,6 +43,7 @@ RingWatch::RingWatch(std::uint32_t number, ipc::CheckedRegion<ipc::RingLayout> r
 bool RingWatch::look(Batch& batch) {
   bool has_lost = false;
   const ipc::Word written = reader_.written();
+  is_filled_fast_ = (written - next_) * kFast > reader_.capacity();
   while (next_ < written) {
     if (reader_.observe(next_, item_)) {
       put_item(batch);

@@ -33,6 +33,8 @@ class RingWatch {
   /// Reads the new items into the batch, and what was overwritten before that as a loss. Returns
   /// whether there is one.
   bool look(Batch& batch);
+  /// Whether the last look read so much of the ring that the next one should not wait.
+  [[nodiscard]] bool is_filled_fast() const noexcept { return is_filled_fast_; }
 
   /// The number after the newest item that has been read.
   [[nodiscard]] ipc::Word next() const noexcept { return next_; }
@@ -75,7 +77,8 @@ class RingWatch {
   ipc::Word old_until_;  ///< items before this number were there before
   ipc::Word next_ = 0;
   ipc::Word complete_from_ = 0;
-  bool has_any_ = false;       ///< whether an item has been read
+  bool has_any_ = false;  ///< whether an item has been read
+  bool is_filled_fast_ = false;
   std::deque<OpenItem> open_;  ///< waypoints that may not have settled
 };
 

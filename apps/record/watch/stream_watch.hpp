@@ -41,6 +41,8 @@ class StreamWatch {
 
   /// Whether look() has anything to do: some loads.
   [[nodiscard]] bool calls() const noexcept;
+  /// Whether the last look read so much that the next one should not wait.
+  [[nodiscard]] bool is_filled_fast() const noexcept { return ring_ && ring_->is_filled_fast(); }
 
   /// Reads what is new. Detaches from a stream that has been retired.
   void look(Batch& batch);

@@ -15,6 +15,8 @@ constexpr Time kLookAround = std::chrono::milliseconds(5);
 constexpr Time kLookAtOwners = std::chrono::milliseconds(100);
 /// A name that is gone is forgotten after this time.
 constexpr Time kForget = std::chrono::seconds(2);
+/// The pause after a sweep that has read a large part of a ring.
+constexpr Time kFastPause = std::chrono::milliseconds(1);
 /// A sweep that reads more records of one stream than this is followed by another one at once.
 constexpr std::size_t kMany = 128;
 
@@ -53,6 +55,7 @@ void Watcher::sweep(Batch& batch, bool may_attach) {
   }
   schedule_.begin(batch.now);
   is_late_ = false;
+  is_fast_ = false;
   for (std::size_t i = 0; i < members_.size(); ++i) {
     Member& member = *members_[i];
     if (!schedule_.reads(i, member.active)) continue;
@@ -67,12 +70,14 @@ void Watcher::sweep(Batch& batch, bool may_attach) {
     has_detached_ = has_detached_ || !member.watch.is_complete();
     member.active = batch.now;
     is_late_ = is_late_ || batch.records.size() - before > kMany;
+    is_fast_ = is_fast_ || member.watch.is_filled_fast();
     schedule_.note_work();
   }
 }
 
 Time Watcher::next_pause() const noexcept {
-  return is_late_ ? Time::zero() : schedule_.next_pause();
+  if (is_late_) return Time::zero();
+  return is_fast_ ? kFastPause : schedule_.next_pause();
 }
 
 void Watcher::look_around(Batch& batch) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -82,9 +83,10 @@ class Watcher {
   std::map<std::string, Member*, std::less<>> by_name_;
   Time next_look_ = Time::min();
   Time next_forget_{};
-  ipc::PollSchedule schedule_;
+  ipc::PollSchedule schedule_{std::chrono::milliseconds(2)};
   bool has_looked_around_ = false;
   bool is_late_ = false;
+  bool is_fast_ = false;
   bool has_detached_ = false;
   bool has_seen_any_ = false;
 };

@@ -97,8 +97,8 @@ std::size_t items_in(const std::string& folder) {
   return most;
 }
 
-/// Wherever the disk is full, in a chunk or in the summary of the file: what the report counts as
-/// recorded is what the files have, and the rest is lost.
+/// The disk is full at any byte, of a chunk or of the summary of the file: what the report counts
+/// as recorded is what the files have, and the rest is lost.
 TEST_F(RecordFiles, OnADiskThatIsFullAtAnyByteTheReportSaysWhatTheFilesHave) {
   const testing::TestFolder folder;
   const std::string place = folder.path("place");
